@@ -1,0 +1,192 @@
+//! The one `SyntaxKind` of every language: tokens first, then nodes.
+
+macro_rules! kinds {
+    ($($(#[$meta:meta])* $name:ident),* $(,)?) => {
+        /// Kind of a token or node. One enum for all languages, so that one typed-AST kit serves them all.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[repr(u16)]
+        pub enum SyntaxKind { $($(#[$meta])* $name),* }
+
+        /// Every kind, at the index that is its number.
+        const KINDS: &[SyntaxKind] = &[$(SyntaxKind::$name),*];
+    };
+}
+
+kinds! {
+    // Trivia: never seen by a grammar, kept in the tree.
+    /// Blanks and tabs.
+    Whitespace,
+    /// One line break: LF, CRLF or CR.
+    Newline,
+    /// A comment of the language, delimiters included.
+    Comment,
+    /// A comment that is not closed before the end of the unit.
+    UnclosedComment,
+
+    // Tokens that several languages share.
+    /// A run of characters that no token of the language starts with.
+    Unknown,
+    Ident,
+    /// An integer or real number without a type prefix.
+    Number,
+    /// A constant with a type or base prefix: `S5T#10S`, `W#16#FF`, `2#1010`, `16#AB`, `T#5s`.
+    TypedConstant,
+    /// Text between quotes: `'abc'`.
+    CharString,
+    /// A quoted symbol: `"X0"` or `« X0 »`.
+    QuotedSymbol,
+    Bang,
+    Percent,
+    Colon,
+    Semicolon,
+    Comma,
+    Dot,
+    DotDot,
+    LParen,
+    RParen,
+    LBrack,
+    RBrack,
+    LBrace,
+    RBrace,
+    Assign,
+    Eq,
+    Ne,
+    Lt,
+    Le,
+    Gt,
+    Ge,
+    Plus,
+    Minus,
+    Star,
+    Slash,
+    Hash,
+    Arrow,
+
+    // STEP 7 AWL tokens.
+    /// `#name`: a name of the block's own declarations.
+    LocalName,
+    /// `{S7_attr := '...'}`.
+    Attribute,
+    /// An operator mnemonic: `==I`, `<>R`, `+I`, `*D`, `+AR1`, ...
+    Operator,
+    /// A pointer constant: `P#M 0.0`, `P#DB1.DBX 0.0 BYTE 10`.
+    PointerConstant,
+    /// The text of a TITLE, AUTHOR ... line after its `=` or `:`.
+    FreeText,
+
+    // PL7 tokens.
+    /// A direct object, as one token: `%MW10:X4`, `%I\0.2.1\0.7`, `%TM8.Q`, `%NW{2.3}1`.
+    ObjectAddress,
+    /// What may follow an index: `:10`, `:X4`, `.T`, `.5`.
+    ObjectSuffix,
+    /// `%L20`.
+    LabelAddress,
+    /// `(*PHRASE*)` of the exchange form.
+    SentenceStart,
+    /// `(*END_PHRASE*)` of the exchange form.
+    SentenceEnd,
+    /// `[HEADER]` and its like, in the exchange form.
+    BlockMark,
+
+    // Nodes.
+    /// Root of every unit.
+    Root,
+    /// Tokens that the grammar could not place.
+    Error,
+
+    // STEP 7 AWL nodes.
+    /// One OB, FB, FC, DB or UDT with its header.
+    Block,
+    /// Code without a block header.
+    Listing,
+    BlockHeader,
+    BlockName,
+    /// `TITLE = ...`.
+    TitleLine,
+    /// `AUTHOR : ...`, `VERSION : ...`, `KNOW_HOW_PROTECT` and their like.
+    BlockAttribute,
+    VarSection,
+    VarDecl,
+    VarName,
+    TypeRef,
+    StructType,
+    ArrayType,
+    InitValue,
+    /// A value assigned in the BEGIN part of a data block.
+    DataInit,
+    Network,
+    NetworkHeader,
+    Instr,
+    Label,
+    Operand,
+    ArgList,
+    Arg,
+
+    // PL7 nodes.
+    Sentence,
+    LabelDef,
+    IlInstr,
+    /// `[%MW10:=%MW0+100]` and `LD[%MW10<1000]`: what stands in the brackets.
+    Bracket,
+    StmtList,
+    AssignStmt,
+    CallStmt,
+    IfStmt,
+    IfArm,
+    ElseArm,
+    WhileStmt,
+    RepeatStmt,
+    ForStmt,
+    ExitStmt,
+    JumpStmt,
+    ReturnStmt,
+    HaltStmt,
+    EmptyStmt,
+    ExprStmt,
+    BinExpr,
+    UnaryExpr,
+    ParenExpr,
+    CallExpr,
+    Literal,
+    /// A direct object with its index and suffix.
+    ObjectRef,
+    /// A symbol, with an optional `.item`.
+    NameRef,
+    Index,
+
+    // Exchange container nodes.
+    ExchangeBlock,
+    KeyValue,
+}
+
+impl SyntaxKind {
+    pub fn is_trivia(self) -> bool {
+        matches!(self, Self::Whitespace | Self::Newline | Self::Comment | Self::UnclosedComment)
+    }
+}
+
+impl From<SyntaxKind> for rowan::SyntaxKind {
+    fn from(kind: SyntaxKind) -> Self {
+        Self(kind as u16)
+    }
+}
+
+/// The one rowan language of the crate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Plc {}
+
+impl rowan::Language for Plc {
+    type Kind = SyntaxKind;
+
+    fn kind_from_raw(raw: rowan::SyntaxKind) -> SyntaxKind {
+        KINDS[usize::from(raw.0)]
+    }
+
+    fn kind_to_raw(kind: SyntaxKind) -> rowan::SyntaxKind {
+        kind.into()
+    }
+}
+
+pub type SyntaxNode = rowan::SyntaxNode<Plc>;
+pub type SyntaxToken = rowan::SyntaxToken<Plc>;
+pub type SyntaxElement = rowan::SyntaxElement<Plc>;

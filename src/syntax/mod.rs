@@ -1,0 +1,48 @@
+//! Text to lossless tree. One [`SyntaxKind`], one parser kit, and one lexer and grammar a language.
+//!
+//! **Invariant:** parsing never fails and never loses a byte: the tree's text is the input, for every input; what is
+//! wrong is an error node and an entry in [`Parse::errors`]. Time is linear in the input, depth is limited.
+//! **Invariant:** this module knows no database, no configuration, no controller and no rule.
+
+mod builder;
+mod kind;
+mod parser;
+
+pub mod awl;
+pub mod exchange;
+pub mod pl7;
+
+pub use kind::{Plc, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
+pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError, Token};
+
+/// Mnemonic set of a Siemens program: the same word means different things in the two (`SE`, `A`, `AD`, `E`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Mnemonics {
+    /// `U`, `E 0.0`, `AUF`, `SPA`: the set called SIMATIC.
+    German,
+    /// `A`, `I 0.0`, `OPN`, `JU`: the set called international.
+    English,
+}
+
+/// What a unit of text is written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Language {
+    /// STEP 7 statement list, sources and bare listings.
+    Awl(Mnemonics),
+    /// PL7 instruction list.
+    Pl7Il,
+    /// PL7 structured text.
+    Pl7St,
+    /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
+    Exchange,
+}
+
+/// Parses one unit. Total and linear for every text.
+pub fn parse(language: Language, text: &str) -> Parse {
+    match language {
+        Language::Awl(mnemonics) => awl::parse(text, mnemonics),
+        Language::Pl7Il => pl7::parse_il(text),
+        Language::Pl7St => pl7::parse_st(text),
+        Language::Exchange => exchange::parse(text),
+    }
+}

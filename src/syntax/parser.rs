@@ -1,0 +1,320 @@
+//! The parser kit: a cursor over tokens that a grammar drives, and the events it leaves behind.
+//!
+//! A grammar sees significant tokens only. It opens a node with [`Parser::start`], closes it with
+//! [`Parser::complete`], and may wrap a finished node afterwards with [`Parser::precede`]. Whatever a grammar does,
+//! every token is in the tree exactly once and in order: [`Parser::finish`] appends those that were not consumed.
+
+use rowan::{GreenNode, TextRange, TextSize};
+
+use super::builder::TreeBuilder;
+use super::kind::{SyntaxKind, SyntaxNode};
+
+/// Nesting beyond this is reported once and read flat, so that no input can exhaust the stack.
+pub const MAX_DEPTH: u32 = 128;
+
+/// One lexed token: kind and length in bytes. The lengths of all tokens add up to the text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Token {
+    pub kind: SyntaxKind,
+    pub len: u32,
+}
+
+/// A place that the grammar does not allow, with what was expected. The range is relative to the unit.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct SyntaxError {
+    pub range: TextRange,
+    pub message: String,
+}
+
+/// Always a tree, plus what was wrong with the text. The tree's text is the input, for every input.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Parse {
+    green: GreenNode,
+    errors: Box<[SyntaxError]>,
+}
+
+impl Parse {
+    /// The root. Green trees can be shared between threads; this view of one cannot.
+    pub fn syntax(&self) -> SyntaxNode {
+        SyntaxNode::new_root(self.green.clone())
+    }
+
+    pub fn errors(&self) -> &[SyntaxError] {
+        &self.errors
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Event {
+    /// Opens a node; `forward_parent` is the distance to the event of a node that wraps it.
+    Start { kind: SyntaxKind, forward_parent: u32 },
+    /// A start that was abandoned.
+    Tombstone,
+    Finish,
+    /// Consumes the next significant token, possibly under another kind than the lexer gave it.
+    Token(SyntaxKind),
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Significant {
+    kind: SyntaxKind,
+    start: u32,
+    len: u32,
+    newline_before: bool,
+}
+
+pub struct Parser<'t> {
+    text: &'t str,
+    tokens: &'t [Token],
+    significant: Vec<Significant>,
+    pos: usize,
+    events: Vec<Event>,
+    errors: Vec<SyntaxError>,
+    depth: u32,
+}
+
+/// An open node.
+#[must_use = "a started node must be completed or abandoned"]
+pub struct Marker(usize);
+
+/// A closed node, which `precede` can wrap.
+#[derive(Debug, Clone, Copy)]
+pub struct Completed(usize);
+
+impl<'t> Parser<'t> {
+    pub fn new(text: &'t str, tokens: &'t [Token]) -> Self {
+        let mut significant = Vec::with_capacity(tokens.len() * 2 / 3 + 1);
+        let mut start = 0;
+        let mut newline_before = true;
+        for token in tokens {
+            match token.kind {
+                SyntaxKind::Newline => newline_before = true,
+                kind if kind.is_trivia() => {}
+                kind => {
+                    significant.push(Significant { kind, start, len: token.len, newline_before });
+                    newline_before = false;
+                }
+            }
+            start += token.len;
+        }
+        let events = Vec::with_capacity(significant.len() * 2);
+        Self { text, tokens, significant, pos: 0, events, errors: Vec::new(), depth: 0 }
+    }
+
+    pub fn at_end(&self) -> bool {
+        self.pos >= self.significant.len()
+    }
+
+    pub fn current(&self) -> Option<SyntaxKind> {
+        self.nth(0)
+    }
+
+    pub fn nth(&self, n: usize) -> Option<SyntaxKind> {
+        self.significant.get(self.pos + n).map(|it| it.kind)
+    }
+
+    pub fn at(&self, kind: SyntaxKind) -> bool {
+        self.current() == Some(kind)
+    }
+
+    /// Text of the current token, empty at the end.
+    pub fn current_text(&self) -> &'t str {
+        self.nth_text(0)
+    }
+
+    pub fn nth_text(&self, n: usize) -> &'t str {
+        match self.significant.get(self.pos + n) {
+            Some(it) => &self.text[it.start as usize..(it.start + it.len) as usize],
+            None => "",
+        }
+    }
+
+    pub fn at_text(&self, text: &str) -> bool {
+        self.current_text().eq_ignore_ascii_case(text)
+    }
+
+    /// Whether the current token is the first significant one on its line. True at the end.
+    pub fn newline_before(&self) -> bool {
+        self.nth_newline_before(0)
+    }
+
+    pub fn nth_newline_before(&self, n: usize) -> bool {
+        self.significant.get(self.pos + n).is_none_or(|it| it.newline_before)
+    }
+
+    /// Whether blanks or comments stand before the n-th token from here.
+    pub fn nth_gap_before(&self, n: usize) -> bool {
+        let at = self.pos + n;
+        match (self.significant.get(at), at.checked_sub(1).and_then(|it| self.significant.get(it))) {
+            (Some(this), Some(before)) => before.start + before.len != this.start,
+            _ => true,
+        }
+    }
+
+    /// Index of the current token: grows with every `bump`, so a loop can assert its own progress.
+    pub fn position(&self) -> usize {
+        self.pos
+    }
+
+    pub fn bump(&mut self) {
+        if let Some(kind) = self.current() {
+            self.bump_as(kind);
+        }
+    }
+
+    /// Consumes the current token under another kind: contextual keywords and free text.
+    pub fn bump_as(&mut self, kind: SyntaxKind) {
+        if !self.at_end() {
+            self.events.push(Event::Token(kind));
+            self.pos += 1;
+        }
+    }
+
+    pub fn eat(&mut self, kind: SyntaxKind) -> bool {
+        let found = self.at(kind);
+        if found {
+            self.bump();
+        }
+        found
+    }
+
+    pub fn start(&mut self) -> Marker {
+        self.events.push(Event::Tombstone);
+        Marker(self.events.len() - 1)
+    }
+
+    pub fn complete(&mut self, marker: Marker, kind: SyntaxKind) -> Completed {
+        self.events[marker.0] = Event::Start { kind, forward_parent: 0 };
+        self.events.push(Event::Finish);
+        Completed(marker.0)
+    }
+
+    /// Forgets an open node; its tokens go to the node around it.
+    pub fn abandon(&mut self, marker: Marker) {
+        if marker.0 + 1 == self.events.len() {
+            self.events.pop();
+        }
+    }
+
+    /// Opens a node that wraps the completed one.
+    pub fn precede(&mut self, completed: Completed) -> Marker {
+        let marker = self.start();
+        if let Event::Start { forward_parent, .. } = &mut self.events[completed.0] {
+            *forward_parent = u32::try_from(marker.0 - completed.0).unwrap_or(0);
+        }
+        marker
+    }
+
+    /// Range of the current token; empty, after the last significant token, at the end.
+    pub fn current_range(&self) -> TextRange {
+        match self.significant.get(self.pos) {
+            Some(it) => TextRange::at(TextSize::new(it.start), TextSize::new(it.len)),
+            None => TextRange::empty(self.previous_range().end()),
+        }
+    }
+
+    /// Range of the token consumed last.
+    pub fn previous_range(&self) -> TextRange {
+        match self.pos.checked_sub(1).and_then(|it| self.significant.get(it)) {
+            Some(it) => TextRange::at(TextSize::new(it.start), TextSize::new(it.len)),
+            None => TextRange::empty(TextSize::new(0)),
+        }
+    }
+
+    /// Reports the current token.
+    pub fn error(&mut self, message: impl Into<String>) {
+        let range = self.current_range();
+        self.error_at(range, message);
+    }
+
+    pub fn error_at(&mut self, range: TextRange, message: impl Into<String>) {
+        self.errors.push(SyntaxError { range, message: message.into() });
+    }
+
+    /// Runs `inner` one level deeper, or reports the depth and returns `None`: the caller then skips to the end of
+    /// the construct without recursion.
+    pub fn nested<T>(&mut self, inner: impl FnOnce(&mut Self) -> T) -> Option<T> {
+        if self.depth >= MAX_DEPTH {
+            self.error(format!("nesting deeper than {MAX_DEPTH} levels is not read"));
+            return None;
+        }
+        self.depth += 1;
+        let result = inner(self);
+        self.depth -= 1;
+        Some(result)
+    }
+
+    /// Builds the tree under one [`SyntaxKind::Root`].
+    pub fn finish(mut self) -> Parse {
+        let mut cursor = Cursor { text: self.text, tokens: self.tokens, index: 0, offset: 0, builder: TreeBuilder::new() };
+        cursor.builder.start_node(SyntaxKind::Root);
+        let mut wrappers = Vec::new();
+        let mut open = 0_u32;
+        for at in 0..self.events.len() {
+            match std::mem::replace(&mut self.events[at], Event::Tombstone) {
+                Event::Tombstone => {}
+                Event::Start { kind, forward_parent } => {
+                    wrappers.push(kind);
+                    let (mut from, mut distance) = (at, forward_parent);
+                    while distance != 0 {
+                        from += distance as usize;
+                        match std::mem::replace(&mut self.events[from], Event::Tombstone) {
+                            Event::Start { kind, forward_parent } => {
+                                wrappers.push(kind);
+                                distance = forward_parent;
+                            }
+                            _ => break,
+                        }
+                    }
+                    cursor.trivia();
+                    for kind in wrappers.drain(..).rev() {
+                        cursor.builder.start_node(kind);
+                        open += 1;
+                    }
+                }
+                Event::Finish => {
+                    if open > 0 {
+                        cursor.builder.finish_node();
+                        open -= 1;
+                    }
+                }
+                Event::Token(kind) => {
+                    cursor.trivia();
+                    cursor.token(Some(kind));
+                }
+            }
+        }
+        for _ in 0..open {
+            cursor.builder.finish_node();
+        }
+        while cursor.index < cursor.tokens.len() {
+            cursor.token(None);
+        }
+        self.errors.sort_by_key(|it| (it.range.start(), it.range.end()));
+        Parse { green: cursor.builder.finish(), errors: self.errors.into_boxed_slice() }
+    }
+}
+
+struct Cursor<'t> {
+    text: &'t str,
+    tokens: &'t [Token],
+    index: usize,
+    offset: usize,
+    builder: TreeBuilder,
+}
+
+impl Cursor<'_> {
+    fn trivia(&mut self) {
+        while self.tokens.get(self.index).is_some_and(|it| it.kind.is_trivia()) {
+            self.token(None);
+        }
+    }
+
+    fn token(&mut self, kind: Option<SyntaxKind>) {
+        let Some(token) = self.tokens.get(self.index) else { return };
+        let end = self.offset + token.len as usize;
+        self.builder.token(kind.unwrap_or(token.kind), &self.text[self.offset..end]);
+        self.offset = end;
+        self.index += 1;
+    }
+}
