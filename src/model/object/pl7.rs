@@ -1,0 +1,1 @@
+//! PL7 addresses.
