@@ -3,5 +3,10 @@
 //! **Invariant:** this module knows no rule.
 
 pub mod entity;
+pub mod expr;
 pub mod literal;
+pub mod lower;
 pub mod object;
+pub mod unit;
+
+pub use unit::UnitModel;
