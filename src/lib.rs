@@ -5,6 +5,7 @@
 //! draws facts from models; the rules, found under `rules/`, draw findings from facts through [`lint`]; [`report`]
 //! renders findings; [`cli`] is the command line. `db` ties the layers together with salsa.
 
+pub mod analysis;
 pub mod lint;
 pub mod model;
 pub mod source;

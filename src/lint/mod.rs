@@ -8,8 +8,9 @@ mod finding;
 mod outcome;
 mod rule;
 
+pub use crate::analysis::Site;
 pub use context::{FileCx, ProgramCx, UnitCx};
-pub use finding::{Applicability, Edit, Finding, Fix, Location, Related, Reported, Severity, Sink, Site};
+pub use finding::{Applicability, Edit, Finding, Fix, Location, Related, Reported, Severity, Sink};
 pub use outcome::{Diagnostic, Outcome, SourceView, Unread, UnreadReason};
 #[expect(unused_imports, reason = "used by the database")]
 pub(crate) use rule::run;

@@ -183,6 +183,11 @@ impl Exprs {
         self.intern(Expr::Edge { object, version, rising })
     }
 
+    /// The plain read of an object's value, where the unit has one.
+    pub fn find_read(&self, object: ObjectId, version: u32) -> Option<ExprId> {
+        self.ids.get(&Expr::Read { object, version }).copied()
+    }
+
     pub fn not(&mut self, a: ExprId) -> ExprId {
         match *self.get(a) {
             Expr::Bool(value) => Self::bool(!value),
