@@ -10,7 +10,7 @@ use crate::model::UnitModel;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
-use crate::model::unit::{Access, Callee, Mode, Pin, StatementKind};
+use crate::model::unit::{Access, Callee, Mode, Pin, Section, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -31,6 +31,8 @@ pub struct Use {
     pub constant: Option<i64>,
     /// Network or sentence.
     pub network: u32,
+    /// For an actual parameter: the call, an index into the unit's calls, and the name of the formal parameter.
+    pub parameter: Option<(u32, SmolStr)>,
 }
 
 /// An object of the unit with how its value is used.
@@ -56,6 +58,15 @@ pub struct FactCall {
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FactDeclaration {
+    /// In lower case.
+    pub name: SmolStr,
+    pub section: Section,
+    /// As written, blanks removed.
+    pub ty: SmolStr,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnitFacts {
     pub entity: Entity,
     pub language: Language,
@@ -67,9 +78,12 @@ pub struct UnitFacts {
     pub exclusive_calls: Vec<(u32, u32)>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
-    /// Names that the block declares, in lower case, with their type as written.
-    pub declared: Vec<(SmolStr, SmolStr)>,
+    /// Parameters and variables that the block declares.
+    pub declared: Vec<FactDeclaration>,
     pub instructions: u32,
+    /// Some place computed at run time is read (or written): any object may be.
+    pub reads_indirectly: bool,
+    pub writes_indirectly: bool,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -109,6 +123,10 @@ impl UnitFacts {
                 let at = u32::try_from(at).unwrap_or(u32::MAX);
                 let statement = model.statement(access);
                 let by_call = conditional_calls.contains(&access.statement);
+                let called = match statement.map(|it| &it.kind) {
+                    Some(StatementKind::Call(call)) => Some(*call),
+                    _ => None,
+                };
                 let constant = values.get(&at).and_then(|&it| match *model.exprs.get(it) {
                     Expr::Int(value) => Some(value),
                     Expr::Bool(value) => Some(i64::from(value)),
@@ -125,6 +143,7 @@ impl UnitFacts {
                         || whens.get(&at).is_some_and(|&it| it != Exprs::TRUE),
                     constant,
                     network: statement.map_or(0, |it| it.network),
+                    parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
                 }
             })
             .collect();
@@ -137,8 +156,14 @@ impl UnitFacts {
             calls: calls(model),
             exclusive_calls: exclusive_calls(model),
             instance_of: model.instance_of.clone(),
-            declared: model.declarations.iter().map(|it| (it.name.clone(), it.ty.clone())).collect(),
+            declared: model
+                .declarations
+                .iter()
+                .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
+                .collect(),
             instructions: model.instructions,
+            reads_indirectly: model.reads_indirectly,
+            writes_indirectly: model.writes_indirectly,
         }
     }
 }

@@ -6,7 +6,7 @@ use super::Site;
 use super::facts::{self, FactCall, UnitFacts, Use};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
-use crate::model::unit::{Callee, Mode};
+use crate::model::unit::{Callee, Mode, Section};
 
 /// What runs code: code of one context never interrupts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -25,6 +25,8 @@ pub enum Context {
 #[derive(Debug, Clone, Copy)]
 pub struct GlobalUse<'a> {
     pub unit: u32,
+    /// What is done to the object. Of an actual parameter, this is what the called block's interface says.
+    pub mode: Mode,
     pub it: &'a Use,
 }
 
@@ -45,15 +47,15 @@ pub struct ObjectUses<'a> {
 
 impl<'a> ObjectUses<'a> {
     pub fn with_mode(&self, wanted: impl Fn(Mode) -> bool) -> impl Iterator<Item = &GlobalUse<'a>> {
-        self.uses.iter().filter(move |it| wanted(it.it.mode))
+        self.uses.iter().filter(move |it| wanted(it.mode))
     }
 
     pub fn is_written(&self) -> bool {
-        self.uses.iter().any(|it| it.it.mode.writes() || matches!(it.it.mode, Mode::Drive(_)))
+        self.uses.iter().any(|it| it.mode.writes() || matches!(it.mode, Mode::Drive(_)))
     }
 
     pub fn is_read(&self) -> bool {
-        self.uses.iter().any(|it| it.it.mode.reads())
+        self.uses.iter().any(|it| it.mode.reads())
     }
 
     /// Whether every unit that uses the object writes it before it reads it: a scratch value that does not outlive the
@@ -61,7 +63,7 @@ impl<'a> ObjectUses<'a> {
     pub fn is_scratch(&self) -> bool {
         self.object.class == Class::Memory
             && self.is_read()
-            && self.uses.iter().all(|it| !it.it.mode.is_edge() && it.it.mode != Mode::EdgeMemory)
+            && self.uses.iter().all(|it| !it.mode.is_edge() && it.mode != Mode::EdgeMemory)
             && self.with_mode(Mode::reads).all(|it| !it.it.exposed)
     }
 }
@@ -124,7 +126,7 @@ impl<'a> ProgramIndex<'a> {
             .enumerate()
             .flat_map(|(unit, facts)| facts.exclusive_calls.iter().map(move |&(a, b)| (as_index(unit), a, b)))
             .collect();
-        let objects = collect(&units, &order);
+        let objects = collect(&units, &order, &calls);
         Self { family, units, objects, calls, callers, contexts, order, complete, exclusive }
     }
 
@@ -327,7 +329,20 @@ fn is_complete(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
     entry && closed
 }
 
-fn collect<'a>(units: &[&'a UnitFacts], order: &[u32]) -> Vec<ObjectUses<'a>> {
+/// What a called block of the program does with an actual parameter.
+fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit: u32, it: &Use) -> Mode {
+    let Some((call, name)) = &it.parameter else { return it.mode };
+    let Some(&target) = targets.get(&(unit, *call)) else { return it.mode };
+    let declared = &units[target as usize].declared;
+    match declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
+        Some(Section::Input) => Mode::Read,
+        Some(Section::Output) => Mode::Output,
+        _ => it.mode,
+    }
+}
+
+fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>]) -> Vec<ObjectUses<'a>> {
+    let targets = calls.iter().filter_map(|it| Some(((it.unit, it.index), it.target?))).collect();
     let mut by_rank: Vec<u32> = (0..as_index(units.len())).collect();
     by_rank.sort_by_key(|&it| order[it as usize]);
     let mut ids: FxHashMap<(&'a crate::model::object::Footprint, crate::model::object::Type, bool), u32> =
@@ -353,7 +368,8 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32]) -> Vec<ObjectUses<'a>> {
             .collect();
         for it in &facts.uses {
             if let Some(Some(id)) = local.get(it.object as usize) {
-                objects[*id as usize].uses.push(GlobalUse { unit, it });
+                let mode = actual_mode(units, &targets, unit, it);
+                objects[*id as usize].uses.push(GlobalUse { unit, mode, it });
             }
         }
     }

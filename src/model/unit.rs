@@ -10,7 +10,7 @@ use smol_str::SmolStr;
 
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
-use super::literal::LiteralError;
+use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use crate::syntax::Language;
 
@@ -133,6 +133,8 @@ pub struct Access {
     pub version: u32,
     /// For reads: whether the value may stem from before this unit's own assignments, so from another unit or scan.
     pub exposed: bool,
+    /// For an actual parameter: the name of the formal one.
+    pub parameter: Option<SmolStr>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -265,6 +267,17 @@ pub struct Loop {
     pub parent: Option<u32>,
 }
 
+/// A constant of a type whose exact value a rule asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    pub value: Value,
+    pub range: TextRange,
+    pub text: SmolStr,
+}
+
+/// Values are compared by their spelling.
+impl Eq for Constant {}
+
 /// Something that the language forbids or that loses a result, found while following the code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum OddityKind {
@@ -383,6 +396,8 @@ pub struct UnitModel {
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
     pub declarations: Vec<Declaration>,
+    /// Durations, as written.
+    pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,
     pub unreachable: Vec<Unreachable>,
     /// Ranges that facts name; the first is the unit's heading.
@@ -391,6 +406,9 @@ pub struct UnitModel {
     pub instance_of: Option<BlockName>,
     /// Instructions and statements read.
     pub instructions: u32,
+    /// Some place computed at run time is read (or written): any object may be.
+    pub reads_indirectly: bool,
+    pub writes_indirectly: bool,
 }
 
 impl UnitModel {

@@ -73,11 +73,14 @@ impl Builder {
             calls: Vec::new(),
             loops: Vec::new(),
             declarations: Vec::new(),
+            constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),
             anchors: vec![heading],
             instance_of: None,
             instructions: 0,
+            reads_indirectly: false,
+            writes_indirectly: false,
         };
         Self {
             model,
@@ -141,7 +144,7 @@ impl Builder {
     fn access(&mut self, object: ObjectId, mode: Mode, range: TextRange, version: u32, exposed: bool) -> u32 {
         let anchor = self.anchor(range);
         let statement = index(self.model.statements.len());
-        self.model.accesses.push(Access { object, mode, statement, anchor, version, exposed });
+        self.model.accesses.push(Access { object, mode, statement, anchor, version, exposed, parameter: None });
         index(self.model.accesses.len() - 1)
     }
 
