@@ -66,15 +66,8 @@ const fn upper_half(characters: &str) -> [char; 128] {
 }
 
 impl Encoding {
-    pub const ALL: [Self; 7] = [
-        Self::Utf8,
-        Self::Utf16Le,
-        Self::Utf16Be,
-        Self::Windows1252,
-        Self::Windows1251,
-        Self::Ibm850,
-        Self::Ibm437,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Utf8, Self::Utf16Le, Self::Utf16Be, Self::Windows1252, Self::Windows1251, Self::Ibm850, Self::Ibm437];
 
     /// The name under which reports and settings know the encoding.
     pub fn as_str(self) -> &'static str {

@@ -9,7 +9,10 @@
 
 pub mod decode;
 pub mod detect;
+mod heading;
 pub mod line_index;
 mod scan;
 pub mod split;
 pub mod walk;
+
+pub use heading::entity_from_address;
