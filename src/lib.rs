@@ -5,7 +5,9 @@
 //! draws facts from models; the rules, found under `rules/`, draw findings from facts through [`lint`]; [`report`]
 //! renders findings; [`cli`] is the command line. `db` ties the layers together with salsa.
 
+pub mod cli;
 pub mod lint;
 pub mod model;
+pub mod report;
 pub mod source;
 pub mod syntax;
