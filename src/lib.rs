@@ -6,7 +6,9 @@
 //! renders findings; [`cli`] is the command line. `db` ties the layers together with salsa.
 
 pub mod analysis;
+pub mod cli;
 pub mod lint;
 pub mod model;
+pub mod report;
 pub mod source;
 pub mod syntax;

@@ -5,13 +5,21 @@
 
 mod context;
 mod finding;
+mod nearest;
 mod outcome;
 mod rule;
+mod select;
+pub mod settings;
+pub mod suppress;
+#[cfg(test)]
+pub(crate) mod testing;
 
 pub use crate::analysis::Site;
 pub use context::{FileCx, ProgramCx, UnitCx};
 pub use finding::{Applicability, Edit, Finding, Fix, Location, Related, Reported, Severity, Sink};
+pub use nearest::nearest;
 pub use outcome::{Diagnostic, Outcome, SourceView, Unread, UnreadReason};
-#[expect(unused_imports, reason = "used by the database")]
 pub(crate) use rule::run;
 pub use rule::{Check, Rule, find, rules};
+pub use select::{Selection, Selector, UnknownRule};
+pub use settings::Settings;

@@ -56,6 +56,11 @@ impl Rule {
         section(self.page, "What to do instead")
     }
 
+    /// The page's section `## What it does`.
+    pub fn what(&self) -> &'static str {
+        section(self.page, "What it does")
+    }
+
     /// The page's section `## Why`.
     pub fn why(&self) -> &'static str {
         section(self.page, "Why")
