@@ -7,8 +7,10 @@
 
 pub mod analysis;
 pub mod cli;
+pub mod db;
 pub mod lint;
 pub mod model;
 pub mod report;
 pub mod source;
 pub mod syntax;
+pub mod target;

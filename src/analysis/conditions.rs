@@ -244,7 +244,8 @@ impl Table {
 
     /// For each term compared with constants or with one other term: the rows that some value of it explains.
     fn orders(&self, exprs: &Exprs) -> Vec<Bits> {
-        let mut terms: FxHashMap<(ExprId, Option<ExprId>), Vec<(usize, Comparison, Option<f64>, bool)>> = FxHashMap::default();
+        let mut terms: FxHashMap<(ExprId, Option<ExprId>), Vec<(usize, Comparison, Option<f64>, bool)>> =
+            FxHashMap::default();
         for (n, &id) in self.order.iter().enumerate() {
             let Expr::Compare(op, a, b) = *exprs.get(id) else { continue };
             match (number(exprs, a), number(exprs, b)) {

@@ -233,7 +233,12 @@ fn groups(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> FxHashMap<u32, 
 
 /// Whether two writes of one object count as one: never both in a scan, or a constant default that a later,
 /// conditional write of the same unit overrides.
-fn same_drive(model: &UnitModel, values: &FxHashMap<u32, ExprId>, first: (u32, &Access), second: (u32, &Access)) -> bool {
+fn same_drive(
+    model: &UnitModel,
+    values: &FxHashMap<u32, ExprId>,
+    first: (u32, &Access),
+    second: (u32, &Access),
+) -> bool {
     let (Some(a), Some(b)) = (model.statement(first.1), model.statement(second.1)) else { return false };
     if a.path == Exprs::FALSE || b.path == Exprs::FALSE {
         return true;

@@ -209,7 +209,13 @@ impl<P> Reported<'_, P> {
     }
 
     /// A fix of one edit.
-    pub fn replace(self, title: impl Into<String>, applicability: Applicability, place: P, by: impl Into<String>) -> Self {
+    pub fn replace(
+        self,
+        title: impl Into<String>,
+        applicability: Applicability,
+        place: P,
+        by: impl Into<String>,
+    ) -> Self {
         self.fix(title, applicability, vec![Edit { place, replacement: by.into() }])
     }
 }

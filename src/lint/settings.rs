@@ -623,7 +623,11 @@ mod tests {
             error("[rules]\nignore = ['W001', 'singel-write']\n"),
             "plclint.toml:2:20: no rule or group is called `singel-write`; did you mean `single-write`?"
         );
-        assert!(error("[rules.severity]\nÜ = 'error'").starts_with("plclint.toml:2:1: "), "{}", error("[rules.severity]\nÜ = 'error'"));
+        assert!(
+            error("[rules.severity]\nÜ = 'error'").starts_with("plclint.toml:2:1: "),
+            "{}",
+            error("[rules.severity]\nÜ = 'error'")
+        );
         assert!(error("[rules.severity]\nsingel-write = 'error'").starts_with("plclint.toml:2:1: no rule"));
         assert_eq!(
             error("[rules.severity]\nW001 = 'fatal'"),

@@ -38,9 +38,14 @@ pub(crate) static RULES: &[Rule] = &[
     rule("I004", "unbalanced-parentheses", "lists", "Parentheses do not match.", Severity::Error, true, &["PL7:3139"]),
     rule("J001", "duplicate-label", "jumps", "A label is defined twice.", Severity::Error, true, &["S7:315"]),
     rule("J005", "unused-label", "jumps", "No jump targets a label.", Severity::Advice, false, &["PL7:2686"]),
-    rule("W001", "single-write", "writes", "A bit is driven in several places.", Severity::Warning, true, &[
-        "PL72:1878",
-        "PL7:1463",
-    ]),
+    rule(
+        "W001",
+        "single-write",
+        "writes",
+        "A bit is driven in several places.",
+        Severity::Warning,
+        true,
+        &["PL72:1878", "PL7:1463"],
+    ),
     rule("X003", "unused-suppression", "reading", "A comment suppresses nothing.", Severity::Warning, true, &[]),
 ];

@@ -95,9 +95,16 @@ pub enum Expr {
     Float(u64),
     Text(SmolStr),
     /// The value of an object; as a condition, whether the bit is 1.
-    Read { object: ObjectId, version: u32 },
+    Read {
+        object: ObjectId,
+        version: u32,
+    },
     /// Rising or falling edge of a bit.
-    Edge { object: ObjectId, version: u32, rising: bool },
+    Edge {
+        object: ObjectId,
+        version: u32,
+        rising: bool,
+    },
     Not(ExprId),
     And(ExprId, ExprId),
     Or(ExprId, ExprId),

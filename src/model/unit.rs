@@ -93,7 +93,14 @@ impl Mode {
     pub fn writes(self) -> bool {
         matches!(
             self,
-            Self::Assign | Self::AssignNot | Self::Set | Self::Reset | Self::Store | Self::EdgeMemory | Self::InOut | Self::Output
+            Self::Assign
+                | Self::AssignNot
+                | Self::Set
+                | Self::Reset
+                | Self::Store
+                | Self::EdgeMemory
+                | Self::InOut
+                | Self::Output
         )
     }
 
@@ -140,16 +147,35 @@ pub struct Access {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StatementKind {
     /// `access` indexes [`UnitModel::accesses`]; `value` is what the bit takes, negation applied.
-    Assign { access: u32, value: ExprId },
-    Set { access: u32, when: ExprId },
-    Reset { access: u32, when: ExprId },
-    Store { access: u32, value: ExprId },
+    Assign {
+        access: u32,
+        value: ExprId,
+    },
+    Set {
+        access: u32,
+        when: ExprId,
+    },
+    Reset {
+        access: u32,
+        when: ExprId,
+    },
+    Store {
+        access: u32,
+        value: ExprId,
+    },
     /// `value` is the preset or duration loaded with it.
-    Drive { access: u32, pin: Pin, when: ExprId, value: Option<ExprId> },
+    Drive {
+        access: u32,
+        pin: Pin,
+        when: ExprId,
+        value: Option<ExprId>,
+    },
     Call(u32),
     Jump(u32),
     /// Back to the caller, or end of the task.
-    Return { when: ExprId },
+    Return {
+        when: ExprId,
+    },
     Halt,
     /// Leaves the innermost loop.
     Exit,

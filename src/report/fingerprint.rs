@@ -120,12 +120,10 @@ mod tests {
     #[test]
     fn values_agree_with_the_code_host() {
         assert_eq!(lines(""), ["c129715d7a2bc9a3:1"]);
-        assert_eq!(lines(" a\nb\n  \t\tc\n d"), [
-            "271789c17abda88f:1",
-            "54703d4cd895b18:1",
-            "180aee12dab6264:1",
-            "a23a3dc5e078b07b:1",
-        ]);
+        assert_eq!(
+            lines(" a\nb\n  \t\tc\n d"),
+            ["271789c17abda88f:1", "54703d4cd895b18:1", "180aee12dab6264:1", "a23a3dc5e078b07b:1",]
+        );
         let expected = [
             "e9496ae3ebfced30:1",
             "fb7c023a8b9ccb3f:1",
@@ -145,13 +143,16 @@ mod tests {
     fn repeated_lines_are_counted() {
         let all = lines(&"Lorem ipsum dolor sit amet.\n".repeat(10));
         assert_eq!(all[..6], [1, 2, 3, 4, 5, 6].map(|it| format!("a7f2ff13bc495cf2:{it}")));
-        assert_eq!(all[6..], [
-            "a7f2ff1481e87703:1",
-            "a9cf91f7bbf1862b:1",
-            "55ec222b86bcae53:1",
-            "cc97dc7b1d7d8f7b:1",
-            "c129715d7a2bc9a3:1",
-        ]);
+        assert_eq!(
+            all[6..],
+            [
+                "a7f2ff1481e87703:1",
+                "a9cf91f7bbf1862b:1",
+                "55ec222b86bcae53:1",
+                "cc97dc7b1d7d8f7b:1",
+                "c129715d7a2bc9a3:1",
+            ]
+        );
     }
 
     #[test]

@@ -359,9 +359,7 @@ impl Cx<'_> {
             .additional_properties(BTreeMap::from([("applicability".to_owned(), json!(applicability))]))
             .build();
         let description = message(fix.title.as_str());
-        Some(
-            Fix::builder().description(description).artifact_changes(artifact_changes).properties(properties).build(),
-        )
+        Some(Fix::builder().description(description).artifact_changes(artifact_changes).properties(properties).build())
     }
 
     fn invocation(&self) -> Invocation {

@@ -281,7 +281,9 @@ impl Machine {
         let first = first_kind(node);
         let has_index = is_indexed(node);
         let operand = match first {
-            Some(SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::CharString | SyntaxKind::PointerConstant)
+            Some(
+                SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::CharString | SyntaxKind::PointerConstant,
+            )
             | Some(SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Hash) => return self.constant(&text, range),
             Some(SyntaxKind::LocalName) => self.local(&text, has_index),
             Some(SyntaxKind::QuotedSymbol) => {
@@ -1486,10 +1488,7 @@ mod tests {
             .filter(|it| it.mode == Mode::Read)
             .map(|it| (model.object(it.object).text.to_string(), it.exposed))
             .collect();
-        assert_eq!(
-            exposed,
-            [("E0.0".to_owned(), true), ("M0.0".to_owned(), false), ("M0.1".to_owned(), true)]
-        );
+        assert_eq!(exposed, [("E0.0".to_owned(), true), ("M0.0".to_owned(), false), ("M0.1".to_owned(), true)]);
     }
 
     #[test]

@@ -8,8 +8,8 @@ use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Object};
 use crate::model::unit::{
-    Access, Call, DeadCause, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement, StatementKind, UnitModel,
-    Unreachable,
+    Access, Call, DeadCause, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement, StatementKind,
+    UnitModel, Unreachable,
 };
 use crate::syntax::Language;
 
@@ -193,7 +193,8 @@ impl Builder {
                     version = version.max(write.version);
                     let covers = write.start <= start && end <= write.end;
                     let own = write.version > self.called;
-                    if covers && own && write.sure.is_some_and(|it| self.model.exprs.has_conjunct_prefix(self.path, it)) {
+                    if covers && own && write.sure.is_some_and(|it| self.model.exprs.has_conjunct_prefix(self.path, it))
+                    {
                         exposed = false;
                     }
                 }
