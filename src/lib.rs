@@ -9,3 +9,4 @@ pub mod lint;
 pub mod model;
 pub mod source;
 pub mod syntax;
+pub mod target;

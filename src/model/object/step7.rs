@@ -55,13 +55,18 @@ struct Place {
 
 impl Place {
     fn object(self, text: SmolStr) -> Object {
+        // The source writes these, and says of no operand that a program may not write it.
+        let rights = match self.class {
+            Class::Output | Class::Memory | Class::Data | Class::Timer | Class::Counter => Rights::ReadWrite,
+            Class::LocalData | Class::InstanceData | Class::PeripheralOutput => Rights::ReadWrite,
+            _ => Rights::Unknown,
+        };
         Object {
             text,
             class: self.class,
             ty: self.ty,
             footprint: Footprint::new(self.area, self.start, self.ty.bits().unwrap_or(1)),
-            // The source says of no operand that a program may not write it.
-            rights: Rights::Unknown,
+            rights,
             extracted: false,
             indexed: false,
         }
@@ -441,6 +446,16 @@ mod tests {
                 assert_eq!(object.text, operand.replace(' ', ""));
                 assert!(object.is_fixed());
             }
+        }
+    }
+
+    #[test]
+    fn rights() {
+        for operand in ["M0.0", "A4.0", "DB5.DBW0", "DIW0", "LW2", "T1", "Z1", "PAW 256"] {
+            assert_eq!(object(operand, German).rights, Rights::ReadWrite, "{operand}");
+        }
+        for operand in ["E0.0", "PEW 256", "OV", "STW", "DB5", "M[AR1,P#0.0]"] {
+            assert_eq!(object(operand, German).rights, Rights::Unknown, "{operand}");
         }
     }
 
