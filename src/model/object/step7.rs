@@ -196,6 +196,9 @@ fn read(compact: &str, mnemonics: Mnemonics) -> Result<Place, AddressError> {
             return Ok(Place { class: it.class, ty, area: it.area.clone(), start });
         }
     }
+    if let Some(own) = translate(letters, mnemonics) {
+        return Err(malformed(format!("`{letters}` is of the other mnemonic set: here it is `{own}`")));
+    }
     Err(malformed("no operand has these letters (S7:113-146)"))
 }
 
@@ -613,6 +616,16 @@ mod tests {
             assert_eq!(error.suggestion.as_deref(), suggestion, "{operand}");
             assert!(!error.message.ends_with('.'), "{operand}");
         }
+    }
+
+    #[test]
+    fn an_operand_of_the_other_set_is_named_so() {
+        for (operand, mnemonics) in [("E 0.0", English), ("I 0.0", German), ("Z 1", English), ("PIW 4", German)] {
+            let error = parse(operand, mnemonics).expect_err(operand);
+            assert!(error.message.contains("other mnemonic set"), "{}", error.message);
+        }
+        let error = parse("XY 1", German).expect_err("XY 1");
+        assert!(!error.message.contains("other mnemonic set"), "{}", error.message);
     }
 
     #[test]
