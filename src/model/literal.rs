@@ -274,7 +274,8 @@ fn real(text: &str, dialect: &Dialect) -> Result<Value, LiteralError> {
     let value: f64 = text.parse().map_err(|_| no_number())?;
     let (least, greatest) = dialect.real;
     let is_zero = mantissa.bytes().all(|it| matches!(it, b'0' | b'.'));
-    if !is_zero && !(value.abs() > least && value.abs() < greatest) {
+    let in_range = value.abs() > least && value.abs() < greatest;
+    if !is_zero && !in_range {
         let range = if least > 0.0 {
             format!("its magnitude lies between {least:e} and {greatest:e}, both excluded")
         } else {
@@ -441,7 +442,7 @@ fn date(text: &str) -> Result<(), LiteralError> {
     }
     // Two digits are the years 1990 to 2089, whose leap years are those divisible by 4.
     let year = digits(year);
-    let leap = year % 4 == 0 && (year < 100 || year % 100 != 0 || year % 400 == 0);
+    let leap = year.is_multiple_of(4) && (year < 100 || !year.is_multiple_of(100) || year.is_multiple_of(400));
     let last = match digits(month) {
         4 | 6 | 9 | 11 => 30,
         2 if leap => 29,

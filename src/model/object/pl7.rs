@@ -845,6 +845,8 @@ mod tests {
 
     use super::*;
 
+    type IndexedCase = (&'static str, Option<&'static str>, Class, Type, u32, Rights);
+
     fn object(address: &str) -> Object {
         parse(address).unwrap_or_else(|error| panic!("{address}: {error:?}"))
     }
@@ -1175,7 +1177,7 @@ mod tests {
 
     #[test]
     fn indexed() {
-        let cases: &[(&str, Option<&str>, Class, Type, u32, Rights)] = &[
+        let cases: &[IndexedCase] = &[
             ("%I21.3", None, Class::Input, Type::Bool, 3, read_only("PL7:1103")),
             ("%Q32.4", None, Class::Output, Type::Bool, 4, Rights::ReadWrite),
             ("%M10", None, Class::Memory, Type::Bool, 10, Rights::ReadWrite),

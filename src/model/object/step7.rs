@@ -55,13 +55,18 @@ struct Place {
 
 impl Place {
     fn object(self, text: SmolStr) -> Object {
+        // The source writes these, and says of no operand that a program may not write it.
+        let rights = match self.class {
+            Class::Output | Class::Memory | Class::Data | Class::Timer | Class::Counter => Rights::ReadWrite,
+            Class::LocalData | Class::InstanceData | Class::PeripheralOutput => Rights::ReadWrite,
+            _ => Rights::Unknown,
+        };
         Object {
             text,
             class: self.class,
             ty: self.ty,
             footprint: Footprint::new(self.area, self.start, self.ty.bits().unwrap_or(1)),
-            // The source says of no operand that a program may not write it.
-            rights: Rights::Unknown,
+            rights,
             extracted: false,
             indexed: false,
         }
@@ -190,6 +195,9 @@ fn read(compact: &str, mnemonics: Mnemonics) -> Result<Place, AddressError> {
             let start = byte_and_bit(ty, rest, letters)?;
             return Ok(Place { class: it.class, ty, area: it.area.clone(), start });
         }
+    }
+    if let Some(own) = translate(letters, mnemonics) {
+        return Err(malformed(format!("`{letters}` is of the other mnemonic set: here it is `{own}`")));
     }
     Err(malformed("no operand has these letters (S7:113-146)"))
 }
@@ -445,6 +453,16 @@ mod tests {
     }
 
     #[test]
+    fn rights() {
+        for operand in ["M0.0", "A4.0", "DB5.DBW0", "DIW0", "LW2", "T1", "Z1", "PAW 256"] {
+            assert_eq!(object(operand, German).rights, Rights::ReadWrite, "{operand}");
+        }
+        for operand in ["E0.0", "PEW 256", "OV", "STW", "DB5", "M[AR1,P#0.0]"] {
+            assert_eq!(object(operand, German).rights, Rights::Unknown, "{operand}");
+        }
+    }
+
+    #[test]
     fn quoted_data_blocks_and_fields() {
         for operand in ["\"My Data\".DBW4", "\"MY DATA\".dbw 4", "« My Data ».DBW4"] {
             let object = object(operand, German);
@@ -598,6 +616,16 @@ mod tests {
             assert_eq!(error.suggestion.as_deref(), suggestion, "{operand}");
             assert!(!error.message.ends_with('.'), "{operand}");
         }
+    }
+
+    #[test]
+    fn an_operand_of_the_other_set_is_named_so() {
+        for (operand, mnemonics) in [("E 0.0", English), ("I 0.0", German), ("Z 1", English), ("PIW 4", German)] {
+            let error = parse(operand, mnemonics).expect_err(operand);
+            assert!(error.message.contains("other mnemonic set"), "{}", error.message);
+        }
+        let error = parse("XY 1", German).expect_err("XY 1");
+        assert!(!error.message.contains("other mnemonic set"), "{}", error.message);
     }
 
     #[test]
