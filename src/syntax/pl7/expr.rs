@@ -198,14 +198,13 @@ impl Grammar<'_, '_> {
     /// become `ObjectAddress` tokens, so that together they say what one token usually does.
     pub(super) fn object(&mut self) -> Node {
         let m = self.p.start();
-        let is_sign_only = self.p.at(Percent);
-        let lacks_number = is_sign_only || !self.p.current_text().contains(|it: char| it.is_ascii_digit());
-        self.p.bump_as(ObjectAddress);
-        if is_sign_only && self.p.at(Ident) && !self.p.newline_before() {
+        if self.p.at(Percent) {
             self.p.bump_as(ObjectAddress);
-        }
-        if lacks_number && self.p.at(Number) && !self.p.newline_before() {
-            self.p.bump_as(ObjectAddress);
+            if self.p.at(Ident) && !self.p.newline_before() {
+                self.address_word();
+            }
+        } else {
+            self.address_word();
         }
         while self.at_item() {
             self.p.bump_as(ObjectAddress);
@@ -213,6 +212,15 @@ impl Grammar<'_, '_> {
         }
         let height = self.index_and_suffix();
         Node { completed: self.p.complete(m, ObjectRef), height }
+    }
+
+    /// `%MW10`, or `%MW` with its number behind a blank.
+    fn address_word(&mut self) {
+        let has_number = self.p.current_text().contains(|it: char| it.is_ascii_digit());
+        self.p.bump_as(ObjectAddress);
+        if !has_number && self.p.at(Number) && !self.p.newline_before() {
+            self.p.bump_as(ObjectAddress);
+        }
     }
 
     /// `.D`, if need be with blanks, on the same line.

@@ -16,6 +16,9 @@ enum Lexeme {
     #[token("(*", comment)]
     Comment,
     UnclosedComment,
+    // The end of a comment that has ended before: `(* a (* b *) c *)`.
+    #[token("*)")]
+    Unknown,
     SentenceStart,
     SentenceEnd,
 
@@ -107,7 +110,7 @@ macro_rules! same_names {
 }
 
 same_names! {
-    Whitespace Newline Comment UnclosedComment SentenceStart SentenceEnd Ident Number TypedConstant CharString
+    Whitespace Newline Comment UnclosedComment Unknown SentenceStart SentenceEnd Ident Number TypedConstant CharString
     ObjectAddress LabelAddress Elision Bang Percent Colon Semicolon Comma Dot LParen RParen LBrack RBrack LBrace RBrace
     Assign Eq Ne Lt Le Gt Ge Plus Minus Star Slash Hash Arrow
 }
@@ -274,6 +277,7 @@ mod tests {
         assert_eq!(kinds("(*"), [UnclosedComment]);
         assert_eq!(kinds("%M0 (* On boucle\n tant que"), [ObjectAddress, UnclosedComment]);
         assert_eq!(kinds("(* PHRASE *)"), [Comment]);
+        assert_eq!(kinds("(* a (* b *) c *)"), [Comment, Ident, Unknown]);
     }
 
     #[test]

@@ -44,7 +44,7 @@ impl Grammar<'_, '_> {
     fn at_keyword_statement(&self) -> bool {
         match self.keyword() {
             None | Some(Keyword::True | Keyword::False | Keyword::Not | Keyword::Re | Keyword::Fe) => false,
-            Some(_) => self.p.nth(1) != Some(Assign),
+            Some(_) => true,
         }
     }
 
@@ -308,6 +308,10 @@ impl Grammar<'_, '_> {
     /// `=` reads as the assignment that was meant (the rule that reports it has the fix), except in a receptivity.
     pub(super) fn action(&mut self, is_receptivity: bool) -> Option<SyntaxKind> {
         let text = self.p.current_text();
+        let is_object = match self.p.current()? {
+            Ident => self.keyword().is_none() && self.p.nth(1) != Some(LParen),
+            kind => matches!(kind, ObjectAddress | Percent),
+        };
         let lhs = match self.p.current()? {
             Ident if self.keyword().is_none() => match self.p.nth(1) {
                 Some(Assign) => self.name(),
@@ -361,6 +365,9 @@ impl Grammar<'_, '_> {
             },
         };
         if self.p.at(Assign) || (self.p.at(Eq) && !is_receptivity) {
+            if !is_object {
+                self.error(format!("`{}` needs an object on its left", self.p.current_text()));
+            }
             self.p.bump();
             self.value();
             return Some(AssignStmt);
