@@ -92,6 +92,8 @@ kinds! {
     SentenceEnd,
     /// `[HEADER]` and its like, in the exchange form.
     BlockMark,
+    /// `. . . .` or `...`: where a listing leaves code out.
+    Elision,
 
     // Nodes.
     /// Root of every unit.
@@ -128,6 +130,8 @@ kinds! {
     Arg,
 
     // PL7 nodes.
+    /// `ST : MAST - SR10`: the line that names what a listing belongs to.
+    Heading,
     Sentence,
     LabelDef,
     IlInstr,
