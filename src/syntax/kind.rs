@@ -92,8 +92,6 @@ kinds! {
     SentenceEnd,
     /// `[HEADER]` and its like, in the exchange form.
     BlockMark,
-    /// `. . . .` or `...`: where a listing leaves code out.
-    Elision,
 
     // Nodes.
     /// Root of every unit.
