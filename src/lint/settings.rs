@@ -621,7 +621,7 @@ mod tests {
         let error = |text: &str| parse(text).unwrap_err().to_string();
         assert_eq!(
             error("[rules]\nignore = ['W001', 'singel-write']\n"),
-            "plclint.toml:2:20: no rule or group is called `singel-write`; did you mean `single-write`?"
+            "plclint.toml:2:19: no rule or group is called `singel-write`; did you mean `single-write`?"
         );
         assert!(error("[rules.severity]\nÜ = 'error'").starts_with("plclint.toml:2:1: "), "{}", error("[rules.severity]\nÜ = 'error'"));
         assert!(error("[rules.severity]\nsingel-write = 'error'").starts_with("plclint.toml:2:1: no rule"));
