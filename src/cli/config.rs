@@ -50,8 +50,9 @@ impl Loader {
         let overrides = self.overrides.clone();
         let settings = match &file {
             Some(file) => {
-                let text = read(file)
-                    .map_err(|it| Failure::Usage(format!("{}: the configuration cannot be read: {it}", file.display())))?;
+                let text = read(file).map_err(|it| {
+                    Failure::Usage(format!("{}: the configuration cannot be read: {it}", file.display()))
+                })?;
                 let root = self.current.join(file).parent().map(Path::to_owned).unwrap_or_default();
                 let shown = file.strip_prefix(&self.current).unwrap_or(file);
                 Settings::parse(&text, shown, Folders { root, current: self.current.clone() }, overrides)

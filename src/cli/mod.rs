@@ -5,6 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use anstream::{AutoStream, ColorChoice};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 
 mod check;
@@ -14,10 +15,14 @@ mod rule;
 mod rules;
 mod tree;
 
+use crate::source::detect::Dialect;
+
 /// Finds mistakes in PLC programs as they lie on disk: Schneider PL7 (IL, ST) and Siemens STEP 7 (AWL).
 #[derive(Debug, Parser)]
 #[command(name = "plclint", version, propagate_version = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 nothing to report, 1 findings, 2 wrong usage or configuration, 3 internal error.")]
+#[command(
+    after_help = "Exit codes: 0 nothing to report, 1 findings, 2 wrong usage or configuration, 3 internal error."
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -57,6 +62,11 @@ impl Colour {
             Self::Auto => AutoStream::choice(&io::stdout()) != ColorChoice::Never,
         }
     }
+}
+
+/// Reads the value of `--dialect`.
+fn dialect() -> impl TypedValueParser<Value = Dialect> {
+    PossibleValuesParser::new(Dialect::ALL.map(Dialect::as_str)).try_map(|it| it.parse::<Dialect>())
 }
 
 /// How a run ends.

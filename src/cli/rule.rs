@@ -61,7 +61,7 @@ fn write(rule: &Rule, styles: &Styles, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{dim}source: {}{dim:#}", citation(source))?;
     }
     writeln!(out)?;
-    page(rule.page, styles, out)
+    page(rule.body(), styles, out)
 }
 
 /// The Markdown of a page: headings, code and stress get a style, fenced code is set in.

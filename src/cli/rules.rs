@@ -108,12 +108,45 @@ mod tests {
 
     #[test]
     fn a_rule_is_a_line() {
-        insta::assert_snapshot!(render(Format::Text), @"");
+        insta::assert_snapshot!(render(Format::Text), @r"
+        I004  unbalanced-parentheses  error    Parentheses do not match.
+        J001  duplicate-label         error    A label is defined twice.
+        J005  unused-label            note     No jump targets a label. (off by default)
+        W001  single-write            warning  A bit is driven in several places.
+        X003  unused-suppression      warning  A comment suppresses nothing.
+        ");
     }
 
     #[test]
     fn a_group_is_a_table() {
-        insta::assert_snapshot!(render(Format::Markdown), @"");
+        insta::assert_snapshot!(render(Format::Markdown), @r"
+        # Rules
+
+        ## lists
+
+        | code | name | severity | for | what |
+        |---|---|---|---|---|
+        | I004 | unbalanced-parentheses | error | all | Parentheses do not match. |
+
+        ## jumps
+
+        | code | name | severity | for | what |
+        |---|---|---|---|---|
+        | J001 | duplicate-label | error | all | A label is defined twice. |
+        | J005 | unused-label | note, off by default | all | No jump targets a label. |
+
+        ## writes
+
+        | code | name | severity | for | what |
+        |---|---|---|---|---|
+        | W001 | single-write | warning | all | A bit is driven in several places. |
+
+        ## reading
+
+        | code | name | severity | for | what |
+        |---|---|---|---|---|
+        | X003 | unused-suppression | warning | all | A comment suppresses nothing. |
+        ");
     }
 
     #[test]

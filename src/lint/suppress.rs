@@ -384,7 +384,14 @@ mod tests {
 
     #[test]
     fn what_is_malformed_is_said() {
-        for text in ["plclint: alow(W001)", "plclint:", "plclint: allow", "plclint: allow(W001", "plclint: allow()", "é plclint: é"] {
+        for text in [
+            "plclint: alow(W001)",
+            "plclint:",
+            "plclint: allow",
+            "plclint: allow(W001",
+            "plclint: allow()",
+            "é plclint: é",
+        ] {
             let all = parse(text);
             assert_eq!(all.len(), 1, "{text}");
             assert_eq!(all[0].kind, DirectiveKind::Malformed, "{text}");
@@ -431,14 +438,17 @@ mod tests {
     fn leftovers_are_reported_in_order() {
         let text = "A // plclint: allow(J001, W01, all)\n// plclint: allow(W)\nB // plclint: alow(x)\n// plclint: allow(J005)\n";
         let it = read(text, vec![]);
-        assert_eq!(leftovers(&it, text), [
-            "J001 this suppression of J001 (duplicate-label) suppresses nothing",
-            "W01 no rule or group is called `W01`; did you mean `W001`?",
-            "all `all` is no rule: a comment suppresses rules or groups by name",
-            "W this suppression of `writes` suppresses nothing",
-            "plclint: alow `plclint:` is followed by neither `allow(rule)` nor `allow-file(rule)`",
-            "J005 this suppression of J005 (unused-label) suppresses nothing",
-        ]);
+        assert_eq!(
+            leftovers(&it, text),
+            [
+                "J001 this suppression of J001 (duplicate-label) suppresses nothing",
+                "W01 no rule or group is called `W01`; did you mean `W001`?",
+                "all `all` is no rule: a comment suppresses rules or groups by name",
+                "W this suppression of `writes` suppresses nothing",
+                "plclint: alow `plclint:` is followed by neither `allow(rule)` nor `allow-file(rule)`",
+                "J005 this suppression of J005 (unused-label) suppresses nothing",
+            ]
+        );
         assert_eq!(it.leftovers(RULES, |it| it.code == "W001").len(), 4, "rules that are off are left in peace");
     }
 

@@ -4,6 +4,8 @@ use super::finding::Severity;
 use super::rule::{Check, Rule};
 
 const PAGE: &str = "\
+# the-title (T001)
+
 ## What it does
 
 Finds a bit that several places drive by assignment.
@@ -38,9 +40,14 @@ pub(crate) static RULES: &[Rule] = &[
     rule("I004", "unbalanced-parentheses", "lists", "Parentheses do not match.", Severity::Error, true, &["PL7:3139"]),
     rule("J001", "duplicate-label", "jumps", "A label is defined twice.", Severity::Error, true, &["S7:315"]),
     rule("J005", "unused-label", "jumps", "No jump targets a label.", Severity::Advice, false, &["PL7:2686"]),
-    rule("W001", "single-write", "writes", "A bit is driven in several places.", Severity::Warning, true, &[
-        "PL72:1878",
-        "PL7:1463",
-    ]),
+    rule(
+        "W001",
+        "single-write",
+        "writes",
+        "A bit is driven in several places.",
+        Severity::Warning,
+        true,
+        &["PL72:1878", "PL7:1463"],
+    ),
     rule("X003", "unused-suppression", "reading", "A comment suppresses nothing.", Severity::Warning, true, &[]),
 ];

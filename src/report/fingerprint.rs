@@ -8,6 +8,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::lint::SourceView;
+use crate::source::decode::{Encoding, encode};
 
 const WINDOW: usize = 100;
 const BASE: u64 = 37;
@@ -85,25 +86,19 @@ fn as_uploaded(file: &SourceView) -> std::borrow::Cow<'_, str> {
     }
 }
 
-/// The bytes that a file of a single-byte encoding was decoded from; `None` for UTF-8 and for encodings that are not
-/// written.
+/// The bytes that a file of a single-byte encoding was decoded from.
 fn bytes(file: &SourceView) -> Option<Vec<u8>> {
-    let encoding = encoding_rs::Encoding::for_label(file.encoding.as_bytes())?;
-    if !encoding.is_single_byte() {
-        return None;
-    }
-    let (bytes, _, unmappable) = encoding.encode(&file.text);
-    (!unmappable).then(|| bytes.into_owned())
+    let encoding: Encoding = file.encoding.parse().ok()?;
+    if encoding.is_single_byte() { encode(&file.text, encoding, false).ok() } else { None }
 }
 
 /// Length in bytes of the file on disk, where it can be told from the text. A byte order mark is not counted.
 pub(super) fn length(file: &SourceView) -> Option<usize> {
-    if file.text.is_ascii() && !file.encoding.to_ascii_lowercase().starts_with("utf-16")
-        || file.encoding.eq_ignore_ascii_case("utf-8")
-    {
-        return Some(file.text.len());
+    match file.encoding.parse().ok()? {
+        Encoding::Utf8 => Some(file.text.len()),
+        Encoding::Utf16Le | Encoding::Utf16Be => Some(2 * file.text.encode_utf16().count()),
+        _ => Some(file.text.chars().count()),
     }
-    bytes(file).map(|it| it.len())
 }
 
 #[cfg(test)]
@@ -120,12 +115,10 @@ mod tests {
     #[test]
     fn values_agree_with_the_code_host() {
         assert_eq!(lines(""), ["c129715d7a2bc9a3:1"]);
-        assert_eq!(lines(" a\nb\n  \t\tc\n d"), [
-            "271789c17abda88f:1",
-            "54703d4cd895b18:1",
-            "180aee12dab6264:1",
-            "a23a3dc5e078b07b:1",
-        ]);
+        assert_eq!(
+            lines(" a\nb\n  \t\tc\n d"),
+            ["271789c17abda88f:1", "54703d4cd895b18:1", "180aee12dab6264:1", "a23a3dc5e078b07b:1",]
+        );
         let expected = [
             "e9496ae3ebfced30:1",
             "fb7c023a8b9ccb3f:1",
@@ -145,13 +138,16 @@ mod tests {
     fn repeated_lines_are_counted() {
         let all = lines(&"Lorem ipsum dolor sit amet.\n".repeat(10));
         assert_eq!(all[..6], [1, 2, 3, 4, 5, 6].map(|it| format!("a7f2ff13bc495cf2:{it}")));
-        assert_eq!(all[6..], [
-            "a7f2ff1481e87703:1",
-            "a9cf91f7bbf1862b:1",
-            "55ec222b86bcae53:1",
-            "cc97dc7b1d7d8f7b:1",
-            "c129715d7a2bc9a3:1",
-        ]);
+        assert_eq!(
+            all[6..],
+            [
+                "a7f2ff1481e87703:1",
+                "a9cf91f7bbf1862b:1",
+                "55ec222b86bcae53:1",
+                "cc97dc7b1d7d8f7b:1",
+                "c129715d7a2bc9a3:1",
+            ]
+        );
     }
 
     #[test]

@@ -11,7 +11,7 @@ use anstyle::{AnsiColor, Style};
 use ariadne::{Color, Config, IndexType, Label, Report, ReportKind, Source};
 use rustc_hash::FxHashMap;
 
-use super::position::Positions;
+use super::position::{LineCol, LineIndex, Positions};
 use super::{Options, citation, visible, visible_char};
 use crate::lint::{Applicability, Diagnostic, Location, Outcome, Severity, UnreadReason};
 
@@ -69,13 +69,12 @@ struct Picture {
 }
 
 impl Picture {
-    fn new(text: &str, lines: impl Iterator<Item = std::ops::Range<usize>>) -> Self {
+    fn new(text: &str, index: &LineIndex) -> Self {
         let mut shown = String::with_capacity(text.len());
         let mut bounds = Vec::new();
         let mut offset = 0;
-        for line in lines {
-            let line = text.get(line).unwrap_or_default().trim_end_matches(['\n', '\r']);
-            let mut characters = line.chars();
+        for number in 1..=index.line_count() {
+            let mut characters = index.line_text(text, number).unwrap_or_default().chars();
             let before = shown.len();
             shown.extend(characters.by_ref().take(LINE_LIMIT).map(visible_char));
             let mut length = shown[before..].chars().count();
@@ -93,7 +92,7 @@ impl Picture {
     }
 
     /// Offset in the picture; a place on the part of a line that is cut off becomes the ellipsis.
-    fn offset(&self, place: super::position::LineCol) -> usize {
+    fn offset(&self, place: LineCol) -> usize {
         let (start, shown) = self.lines.get(place.line as usize - 1).copied().unwrap_or_default();
         start + (place.column as usize - 1).min(shown)
     }
@@ -108,7 +107,7 @@ impl Pictures<'_> {
     fn make(&mut self, file: u32) -> Option<&Picture> {
         if !self.made.contains_key(&file) {
             let text = &self.positions.file(file)?.text;
-            let picture = Picture::new(text, self.positions.index(file)?.lines());
+            let picture = Picture::new(text, self.positions.index(file)?);
             self.made.insert(file, picture);
         }
         self.made.get(&file)

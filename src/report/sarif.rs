@@ -126,7 +126,7 @@ fn descriptor(rule: &'static Rule) -> ReportingDescriptor {
     if !sources.is_empty() {
         help = format!("{help}\n\nSource: {}.", sources.join("; "));
     }
-    let markdown = format!("# {} {}\n\n{summary}\n\n{}", rule.code, rule.name, rule.page);
+    let markdown = format!("# {} {}\n\n{summary}\n\n{}", rule.code, rule.name, rule.body());
     let severity = match rule.severity {
         Severity::Error => "error",
         Severity::Warning => "warning",
@@ -359,9 +359,7 @@ impl Cx<'_> {
             .additional_properties(BTreeMap::from([("applicability".to_owned(), json!(applicability))]))
             .build();
         let description = message(fix.title.as_str());
-        Some(
-            Fix::builder().description(description).artifact_changes(artifact_changes).properties(properties).build(),
-        )
+        Some(Fix::builder().description(description).artifact_changes(artifact_changes).properties(properties).build())
     }
 
     fn invocation(&self) -> Invocation {

@@ -90,11 +90,8 @@ impl Summary {
                 tenth => put(&mut out, format_args!(", {}.{tenth} % understood", permille / 10)),
             }
         }
-        let found = [
-            (self.errors, "error", "errors"),
-            (self.warnings, "warning", "warnings"),
-            (self.notes, "note", "notes"),
-        ];
+        let found =
+            [(self.errors, "error", "errors"), (self.warnings, "warning", "warnings"), (self.notes, "note", "notes")];
         let found: Vec<String> = found.into_iter().filter(|it| it.0 > 0).map(|it| count(it.0, it.1, it.2)).collect();
         put(&mut out, format_args!("; {}", if found.is_empty() { "no findings".to_owned() } else { found.join(", ") }));
         if self.suppressed > 0 {

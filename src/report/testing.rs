@@ -52,7 +52,9 @@ pub(crate) fn sample() -> Outcome {
         "\u{ab}Ventil\u{bb} (A 4.0) is driven in 2 places",
     );
     write.label = Some("overrides the first".into());
-    write.related.push(Related { place: place(&files, 1, "\u{ab}Ventil\u{bb}", 0), message: "also driven here".into() });
+    write
+        .related
+        .push(Related { place: place(&files, 1, "\u{ab}Ventil\u{bb}", 0), message: "also driven here".into() });
     write.notes.push("FC1 and FC2 are taken to run in the same cycle".into());
     let jump = Finding::new(rule("J001"), place(&files, 0, "M999", 0), "label M999 is defined twice");
     let mut parenthesis = Finding::new(rule("I004"), place(&files, 1, ")", 0), "`)` closes nothing");
