@@ -149,15 +149,6 @@ impl<P> Finding<P> {
     }
 }
 
-/// A place of a program without its position: the `anchor`-th place that the unit's facts name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Site {
-    /// Index of the unit in its program.
-    pub unit: u32,
-    /// Index into the anchors of the unit's model.
-    pub anchor: u32,
-}
-
 /// A place in the decoded text of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Location {
@@ -218,7 +209,13 @@ impl<P> Reported<'_, P> {
     }
 
     /// A fix of one edit.
-    pub fn replace(self, title: impl Into<String>, applicability: Applicability, place: P, by: impl Into<String>) -> Self {
+    pub fn replace(
+        self,
+        title: impl Into<String>,
+        applicability: Applicability,
+        place: P,
+        by: impl Into<String>,
+    ) -> Self {
         self.fix(title, applicability, vec![Edit { place, replacement: by.into() }])
     }
 }

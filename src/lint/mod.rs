@@ -14,11 +14,11 @@ pub mod suppress;
 #[cfg(test)]
 pub(crate) mod testing;
 
+pub use crate::analysis::Site;
 pub use context::{FileCx, ProgramCx, UnitCx};
-pub use finding::{Applicability, Edit, Finding, Fix, Location, Related, Reported, Severity, Sink, Site};
+pub use finding::{Applicability, Edit, Finding, Fix, Location, Related, Reported, Severity, Sink};
 pub use nearest::nearest;
 pub use outcome::{Diagnostic, Outcome, SourceView, Unread, UnreadReason};
-#[expect(unused_imports, reason = "used by the database")]
 pub(crate) use rule::run;
 pub use rule::{Check, Rule, find, rules};
 pub use select::{Selection, Selector, UnknownRule};

@@ -3,7 +3,8 @@
 use rowan::TextRange;
 
 use super::context::{FileCx, ProgramCx, UnitCx};
-use super::finding::{Finding, Severity, Sink, Site};
+use super::finding::{Finding, Severity, Sink};
+use crate::analysis::Site;
 
 /// What a rule looks at, which decides when it runs again after an edit.
 #[derive(Clone, Copy)]

@@ -73,6 +73,11 @@ kinds! {
     PointerConstant,
     /// The text of a TITLE, AUTHOR ... line after its `=` or `:`.
     FreeText,
+    /// An absolute operand as one token: `M 0.0`, `MW4`, `DB5.DBW 0`, `FB 1`; also what only looks like one (a jump to
+    /// the label `M001`).
+    Address,
+    /// `...`, to the end of its line: code that the author of a listing left out.
+    Elision,
 
     // PL7 tokens.
     /// A direct object, as one token: `%MW10:X4`, `%I\0.2.1\0.7`, `%TM8.Q`, `%NW{2.3}1`.

@@ -1,8 +1,36 @@
 //! STEP 7 AWL: sources with block headers and bare listings, German and English mnemonics.
+//!
+//! The tree: `Root > (Block | Listing)*`.
+//!
+//! - `Block > BlockHeader, (TitleLine | BlockAttribute | VarSection | TypeRef)*, (DataInit* | Network*)`. The `STRUCT`
+//!   of a data block or type is a [`VarSection`](SyntaxKind::VarSection) with that keyword.
+//! - `Listing > BlockHeader?, Network*`; the header is a line such as `Bloc FC1 :`.
+//! - `Network > NetworkHeader?, (Instr | Elision)*`; only a first network can lack its header.
+//! - `Instr > Label?, mnemonic tokens, Operand*, ArgList?`. The mnemonic is an `Ident` or `Operator`, plus the `(` of
+//!   `U(`; or the `)` that closes it, plus the `Ident` of `)MCR`. A label alone on its line is an `Instr` of its own.
+//! - `Operand` holds all tokens of one operand; in its brackets stand further operands.
 
-use super::{Mnemonics, Parse, Parser, Token};
+mod grammar;
+mod lexer;
+mod vote;
 
-pub fn parse(text: &str, _mnemonics: Mnemonics) -> Parse {
-    let tokens: &[Token] = &[];
-    Parser::new(text, tokens).finish()
+pub mod ast;
+pub mod instruction;
+
+#[cfg(test)]
+mod tests;
+
+use super::{Mnemonics, Parse, Parser, SyntaxKind};
+
+pub use vote::vote;
+
+/// Parses one unit: a block, a listing, or several of them.
+pub fn parse(text: &str, mnemonics: Mnemonics) -> Parse {
+    let tokens = lexer::lex(text);
+    let mut parser = Parser::new(text, &tokens);
+    grammar::root(&mut parser, mnemonics);
+    if let Some(last) = tokens.last().filter(|it| it.kind == SyntaxKind::UnclosedComment) {
+        grammar::unclosed_comment(&mut parser, text.len(), last.len);
+    }
+    parser.finish()
 }
