@@ -5,6 +5,12 @@
 //! draws facts from models; the rules, found under `rules/`, draw findings from facts through [`lint`]; [`report`]
 //! renders findings; [`cli`] is the command line. `db` ties the layers together with salsa.
 
+pub mod analysis;
+pub mod cli;
+pub mod db;
+pub mod lint;
 pub mod model;
+pub mod report;
 pub mod source;
 pub mod syntax;
+pub mod target;

@@ -1,3 +1,12 @@
 //! What a program *is*, whatever language it was written in.
+//!
+//! **Invariant:** this module knows no rule.
 
 pub mod entity;
+pub mod expr;
+pub mod literal;
+pub mod lower;
+pub mod object;
+pub mod unit;
+
+pub use unit::UnitModel;

@@ -46,3 +46,14 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Exchange => exchange::parse(text),
     }
 }
+
+/// The tree of text in a language that is not read: one error node.
+pub fn opaque(text: &str) -> Parse {
+    let len = u32::try_from(text.len()).unwrap_or(u32::MAX);
+    let tokens: &[Token] = &[Token { kind: SyntaxKind::Unknown, len }];
+    let mut parser = Parser::new(text, if text.is_empty() { &[] } else { tokens });
+    let node = parser.start();
+    parser.bump();
+    parser.complete(node, SyntaxKind::Error);
+    parser.finish()
+}

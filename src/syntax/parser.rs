@@ -47,7 +47,10 @@ impl Parse {
 #[derive(Debug, Clone, Copy)]
 enum Event {
     /// Opens a node; `forward_parent` is the distance to the event of a node that wraps it.
-    Start { kind: SyntaxKind, forward_parent: u32 },
+    Start {
+        kind: SyntaxKind,
+        forward_parent: u32,
+    },
     /// A start that was abandoned.
     Tombstone,
     Finish,
@@ -246,7 +249,8 @@ impl<'t> Parser<'t> {
 
     /// Builds the tree under one [`SyntaxKind::Root`].
     pub fn finish(mut self) -> Parse {
-        let mut cursor = Cursor { text: self.text, tokens: self.tokens, index: 0, offset: 0, builder: TreeBuilder::new() };
+        let mut cursor =
+            Cursor { text: self.text, tokens: self.tokens, index: 0, offset: 0, builder: TreeBuilder::new() };
         cursor.builder.start_node(SyntaxKind::Root);
         let mut wrappers = Vec::new();
         let mut open = 0_u32;

@@ -265,7 +265,10 @@ impl TypeRef {
 
     /// `10` of `STRING [10]`.
     pub fn length(&self) -> Option<SyntaxToken> {
-        tokens(&self.0).skip_while(|it| it.kind() != SyntaxKind::LBrack).nth(1).filter(|it| it.kind() != SyntaxKind::RBrack)
+        tokens(&self.0)
+            .skip_while(|it| it.kind() != SyntaxKind::LBrack)
+            .nth(1)
+            .filter(|it| it.kind() != SyntaxKind::RBrack)
     }
 }
 

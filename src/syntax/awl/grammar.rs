@@ -376,8 +376,7 @@ impl Grammar<'_, '_> {
             self.p.bump();
         }
         self.declarations();
-        let (end, text) =
-            if is_struct { (Keyword::EndStruct, "END_STRUCT") } else { (Keyword::EndVar, "END_VAR") };
+        let (end, text) = if is_struct { (Keyword::EndStruct, "END_STRUCT") } else { (Keyword::EndVar, "END_VAR") };
         if self.keyword() == Some(end) {
             self.p.bump();
             self.p.eat(Semicolon);
@@ -754,8 +753,9 @@ impl Grammar<'_, '_> {
     fn op_here(&self) -> Option<Op> {
         let text = self.p.current_text();
         match self.p.current()? {
-            Ident if self.at_open_paren() => instruction::lookup_open(text, self.mnemonics)
-                .or_else(|| instruction::lookup(text, self.mnemonics)),
+            Ident if self.at_open_paren() => {
+                instruction::lookup_open(text, self.mnemonics).or_else(|| instruction::lookup(text, self.mnemonics))
+            }
             Ident | Operator | Eq | Plus => instruction::lookup(text, self.mnemonics),
             RParen if self.at_mcr_close() => Some(Op::McrClose),
             RParen => Some(Op::Close),
@@ -798,7 +798,11 @@ impl Grammar<'_, '_> {
             Op::Nop if word.len() == 4 => OperandRule::None,
             _ => op.operand(),
         };
-        self.p.bump_as(if self.p.at(Ident) || self.p.at(RParen) { self.p.current().unwrap_or(Ident) } else { Operator });
+        self.p.bump_as(if self.p.at(Ident) || self.p.at(RParen) {
+            self.p.current().unwrap_or(Ident)
+        } else {
+            Operator
+        });
         if matches!(op, Op::McrClose) || (self.p.at(LParen) && opens(op)) {
             self.p.bump();
         }
@@ -1033,8 +1037,7 @@ impl Grammar<'_, '_> {
             match self.p.current() {
                 Some(Dot) => {
                     self.p.bump();
-                    let is_name =
-                        matches!(self.p.current(), Some(Ident | Address | QuotedSymbol | LocalName | Number));
+                    let is_name = matches!(self.p.current(), Some(Ident | Address | QuotedSymbol | LocalName | Number));
                     if !is_name || self.p.newline_before() {
                         self.missing("expected a name after `.`");
                         return Read::Faulty;
@@ -1077,10 +1080,7 @@ impl Grammar<'_, '_> {
 }
 
 fn opens(op: Op) -> bool {
-    matches!(
-        op,
-        Op::AndOpen | Op::AndNotOpen | Op::OrOpen | Op::OrNotOpen | Op::XorOpen | Op::XorNotOpen | Op::McrOpen
-    )
+    matches!(op, Op::AndOpen | Op::AndNotOpen | Op::OrOpen | Op::OrNotOpen | Op::XorOpen | Op::XorNotOpen | Op::McrOpen)
 }
 
 fn unknown_token(text: &str) -> &'static str {

@@ -379,8 +379,19 @@ impl Output {
 fn value_end(bytes: &[u8]) -> usize {
     const KEYS: [&str; 4] = ["AUTHOR", "FAMILY", "NAME", "VERSION"];
     const FLAGS: [&str; 13] = [
-        "KNOW_HOW_PROTECT", "STANDARD", "UNLINKED", "READ_ONLY", "NON_RETAIN", "VAR", "VAR_INPUT", "VAR_OUTPUT",
-        "VAR_IN_OUT", "VAR_TEMP", "STRUCT", "BEGIN", "NETWORK",
+        "KNOW_HOW_PROTECT",
+        "STANDARD",
+        "UNLINKED",
+        "READ_ONLY",
+        "NON_RETAIN",
+        "VAR",
+        "VAR_INPUT",
+        "VAR_OUTPUT",
+        "VAR_IN_OUT",
+        "VAR_TEMP",
+        "STRUCT",
+        "BEGIN",
+        "NETWORK",
     ];
     if let [b'\'', rest @ ..] = bytes {
         let end = memchr::memchr3(b'\'', b'\n', b'\r', rest).unwrap_or(rest.len());
@@ -497,9 +508,8 @@ fn db_element(bytes: &[u8], dot: usize) -> Option<usize> {
 /// How much of `bytes`, which follow `P#`, is an absolute pointer: `0.0`, `M 0.0`, `DB1.DBX 0.0 BYTE 10`.
 fn pointer_rest(bytes: &[u8]) -> Option<usize> {
     let mut at = skip_blanks(bytes, 0);
-    let letters = |from: usize| {
-        bytes.get(from..).map_or(0, |it| it.iter().take_while(|it| it.is_ascii_alphabetic()).count())
-    };
+    let letters =
+        |from: usize| bytes.get(from..).map_or(0, |it| it.iter().take_while(|it| it.is_ascii_alphabetic()).count());
     let number = |from: usize| {
         let digits = count_digits(bytes, from);
         let fraction = match bytes.get(from + digits) {
@@ -540,8 +550,25 @@ fn pointer_rest(bytes: &[u8]) -> Option<usize> {
 
 fn is_repetition(word: &[u8]) -> bool {
     const UNITS: [&str; 19] = [
-        "BOOL", "BYTE", "CHAR", "WORD", "INT", "DWORD", "DINT", "REAL", "DATE", "TIME", "S5TIME", "TOD",
-        "TIME_OF_DAY", "DT", "DATE_AND_TIME", "STRING", "TIMER", "COUNTER", "VOID",
+        "BOOL",
+        "BYTE",
+        "CHAR",
+        "WORD",
+        "INT",
+        "DWORD",
+        "DINT",
+        "REAL",
+        "DATE",
+        "TIME",
+        "S5TIME",
+        "TOD",
+        "TIME_OF_DAY",
+        "DT",
+        "DATE_AND_TIME",
+        "STRING",
+        "TIMER",
+        "COUNTER",
+        "VOID",
     ];
     UNITS.iter().any(|it| it.as_bytes().eq_ignore_ascii_case(word))
 }

@@ -82,7 +82,10 @@ impl<'t> Scan<'t> {
         let is_area = match letters {
             1 => true,
             2 => matches!(word[1].to_ascii_uppercase(), b'B' | b'W' | b'D'),
-            3 => matches!(word[0].to_ascii_uppercase(), b'P') && matches!(word[2].to_ascii_uppercase(), b'B' | b'W' | b'D'),
+            3 => {
+                matches!(word[0].to_ascii_uppercase(), b'P')
+                    && matches!(word[2].to_ascii_uppercase(), b'B' | b'W' | b'D')
+            }
             _ => false,
         };
         match first {

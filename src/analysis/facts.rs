@@ -1,0 +1,323 @@
+//! What a unit tells the rest of its program: who uses which object how, who calls whom.
+//!
+//! **Invariant:** no position in it. Places are anchors, which number the places of a unit in order.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
+use super::conditions;
+use crate::model::UnitModel;
+use crate::model::entity::{BlockName, Entity};
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
+use crate::model::object::{Class, Object};
+use crate::model::unit::{Access, Callee, Mode, Pin, Section, StatementKind};
+use crate::syntax::Language;
+
+/// One use of one object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Use {
+    /// Index into [`UnitFacts::objects`].
+    pub object: u32,
+    pub mode: Mode,
+    pub anchor: u32,
+    /// For reads: the value may stem from another unit or scan.
+    pub exposed: bool,
+    /// For writes that take effect whenever they are reached: writes of one object with equal groups never happen in
+    /// one scan, or the later is meant to override the earlier.
+    pub group: u32,
+    /// Whether control may pass the place by.
+    pub conditional: bool,
+    /// For writes: the constant that is written, when it is one.
+    pub constant: Option<i64>,
+    /// Network or sentence.
+    pub network: u32,
+    /// For an actual parameter: the call, an index into the unit's calls, and the name of the formal parameter.
+    pub parameter: Option<(u32, SmolStr)>,
+}
+
+/// An object of the unit with how its value is used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FactObject {
+    pub object: Object,
+    /// The value is computed with: arithmetic or an order comparison reads it, or an arithmetic result is stored in it.
+    pub number: bool,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FactCall {
+    pub callee: Callee,
+    /// As written.
+    pub text: SmolStr,
+    pub anchor: u32,
+    pub conditional: bool,
+    pub reachable: bool,
+    pub instance: Option<BlockName>,
+    pub full: bool,
+    /// Number of parameters given.
+    pub arguments: u32,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FactDeclaration {
+    /// In lower case.
+    pub name: SmolStr,
+    pub section: Section,
+    /// As written, blanks removed.
+    pub ty: SmolStr,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitFacts {
+    pub entity: Entity,
+    pub language: Language,
+    pub objects: Vec<FactObject>,
+    /// In execution order.
+    pub uses: Vec<Use>,
+    pub calls: Vec<FactCall>,
+    /// Pairs of calls, by index, that never run in the same scan.
+    pub exclusive_calls: Vec<(u32, u32)>,
+    /// For a data block: the block that it is an instance of.
+    pub instance_of: Option<BlockName>,
+    /// Parameters and variables that the block declares.
+    pub declared: Vec<FactDeclaration>,
+    pub instructions: u32,
+    /// Some place computed at run time is read (or written): any object may be.
+    pub reads_indirectly: bool,
+    pub writes_indirectly: bool,
+}
+
+/// More calls than this in a unit are not compared with one another.
+const MAX_COMPARED: usize = 48;
+
+impl UnitFacts {
+    pub fn new(model: &UnitModel) -> Self {
+        let numbers = numbers(model);
+        let mut values: FxHashMap<u32, ExprId> = FxHashMap::default();
+        let mut whens: FxHashMap<u32, ExprId> = FxHashMap::default();
+        let mut conditional_calls: FxHashSet<u32> = FxHashSet::default();
+        for (at, statement) in model.statements.iter().enumerate() {
+            let at = u32::try_from(at).unwrap_or(u32::MAX);
+            match statement.kind {
+                StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
+                    values.insert(access, value);
+                }
+                StatementKind::Set { access, when }
+                | StatementKind::Reset { access, when }
+                | StatementKind::Drive { access, when, .. } => {
+                    whens.insert(access, when);
+                }
+                StatementKind::Call(call) => {
+                    if model.calls.get(call as usize).is_some_and(|it| it.when != Exprs::TRUE) {
+                        conditional_calls.insert(at);
+                    }
+                }
+                _ => {}
+            }
+        }
+        let groups = groups(model, &values);
+        let uses = model
+            .accesses
+            .iter()
+            .enumerate()
+            .map(|(at, access)| {
+                let at = u32::try_from(at).unwrap_or(u32::MAX);
+                let statement = model.statement(access);
+                let by_call = conditional_calls.contains(&access.statement);
+                let called = match statement.map(|it| &it.kind) {
+                    Some(StatementKind::Call(call)) => Some(*call),
+                    _ => None,
+                };
+                let constant = values.get(&at).and_then(|&it| match *model.exprs.get(it) {
+                    Expr::Int(value) => Some(value),
+                    Expr::Bool(value) => Some(i64::from(value)),
+                    _ => None,
+                });
+                Use {
+                    object: access.object.0,
+                    mode: access.mode,
+                    anchor: access.anchor,
+                    exposed: access.exposed,
+                    group: groups.get(&at).copied().unwrap_or(at),
+                    conditional: statement.is_some_and(|it| it.path != Exprs::TRUE)
+                        || by_call
+                        || whens.get(&at).is_some_and(|&it| it != Exprs::TRUE),
+                    constant,
+                    network: statement.map_or(0, |it| it.network),
+                    parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
+                }
+            })
+            .collect();
+        let objects = model.objects.iter().zip(numbers);
+        Self {
+            entity: model.entity.clone(),
+            language: model.language,
+            objects: objects.map(|(object, number)| FactObject { object: object.clone(), number }).collect(),
+            uses,
+            calls: calls(model),
+            exclusive_calls: exclusive_calls(model),
+            instance_of: model.instance_of.clone(),
+            declared: model
+                .declarations
+                .iter()
+                .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
+                .collect(),
+            instructions: model.instructions,
+            reads_indirectly: model.reads_indirectly,
+            writes_indirectly: model.writes_indirectly,
+        }
+    }
+}
+
+/// Which objects are computed with.
+fn numbers(model: &UnitModel) -> Vec<bool> {
+    let mut numbers = vec![false; model.objects.len()];
+    let mut mark = |id: ExprId| {
+        if let Expr::Read { object, .. } = *model.exprs.get(id) {
+            numbers[object.0 as usize] = true;
+        }
+    };
+    for id in 0..model.exprs.len() {
+        match *model.exprs.get(ExprId(u32::try_from(id).unwrap_or(u32::MAX))) {
+            Expr::Binary(Operator::Add | Operator::Sub | Operator::Mul | Operator::Div | Operator::Rem, a, b) => {
+                mark(a);
+                mark(b);
+            }
+            Expr::Compare(op, a, b) if !matches!(op.as_str(), "=" | "<>") => {
+                mark(a);
+                mark(b);
+            }
+            Expr::Negate(a) => mark(a),
+            _ => {}
+        }
+    }
+    for statement in &model.statements {
+        if let StatementKind::Store { access, value } = statement.kind
+            && let Expr::Binary(Operator::Add | Operator::Sub | Operator::Mul | Operator::Div | Operator::Rem, ..) =
+                model.exprs.get(value)
+            && let Some(access) = model.accesses.get(access as usize)
+        {
+            numbers[access.object.0 as usize] = true;
+        }
+    }
+    numbers
+}
+
+/// Groups of writes of one object, by access: equal numbers for writes of which at most one takes effect in a scan.
+fn groups(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> FxHashMap<u32, u32> {
+    let mut writes: FxHashMap<ObjectId, Vec<(u32, &Access)>> = FxHashMap::default();
+    for (at, access) in model.accesses.iter().enumerate() {
+        if access.mode.assigns() || access.mode == Mode::Store || matches!(access.mode, Mode::Drive(_)) {
+            writes.entry(access.object).or_default().push((u32::try_from(at).unwrap_or(u32::MAX), access));
+        }
+    }
+    let mut groups = FxHashMap::default();
+    for list in writes.into_values().filter(|it| it.len() > 1) {
+        let mut open: Vec<Vec<(u32, &Access)>> = Vec::new();
+        for (at, access) in list {
+            let fits = |group: &Vec<(u32, &Access)>| {
+                group.len() < MAX_COMPARED
+                    && group.iter().all(|&(other, before)| same_drive(model, values, (other, before), (at, access)))
+            };
+            match open.iter_mut().take(MAX_COMPARED).find(|it| fits(it)) {
+                Some(group) => group.push((at, access)),
+                None => open.push(vec![(at, access)]),
+            }
+        }
+        for group in open {
+            let first = group[0].0;
+            groups.extend(group.into_iter().map(|(at, _)| (at, first)));
+        }
+    }
+    groups
+}
+
+/// Whether two writes of one object count as one: never both in a scan, or a constant default that a later,
+/// conditional write of the same unit overrides.
+fn same_drive(
+    model: &UnitModel,
+    values: &FxHashMap<u32, ExprId>,
+    first: (u32, &Access),
+    second: (u32, &Access),
+) -> bool {
+    let (Some(a), Some(b)) = (model.statement(first.1), model.statement(second.1)) else { return false };
+    if a.path == Exprs::FALSE || b.path == Exprs::FALSE {
+        return true;
+    }
+    if first.1.statement == second.1.statement {
+        return true;
+    }
+    let default = values.get(&first.0).is_some_and(|&it| matches!(model.exprs.get(it), Expr::Bool(_) | Expr::Int(_)));
+    if default && a.path != b.path && model.exprs.has_conjunct_prefix(b.path, a.path) {
+        return true;
+    }
+    let (a, b) = (effective(model, first, a.path), effective(model, second, b.path));
+    conditions::together(&model.exprs, &[a.0, a.1, b.0, b.1]) == conditions::Verdict::Never
+}
+
+/// Path to a write, and the condition at the instruction itself.
+fn effective(model: &UnitModel, write: (u32, &Access), path: ExprId) -> (ExprId, ExprId) {
+    let when = match model.statement(write.1).map(|it| &it.kind) {
+        Some(StatementKind::Drive { when, .. }) => *when,
+        Some(StatementKind::Call(call)) => model.calls.get(*call as usize).map_or(Exprs::TRUE, |it| it.when),
+        _ => Exprs::TRUE,
+    };
+    (path, when)
+}
+
+fn calls(model: &UnitModel) -> Vec<FactCall> {
+    let path = |statement: u32| model.statements.get(statement as usize).map_or(Exprs::TRUE, |it| it.path);
+    model
+        .calls
+        .iter()
+        .map(|call| FactCall {
+            callee: call.callee.clone(),
+            text: call.text.clone(),
+            anchor: call.anchor,
+            conditional: call.when != Exprs::TRUE || path(call.statement) != Exprs::TRUE,
+            reachable: path(call.statement) != Exprs::FALSE && call.when != Exprs::FALSE,
+            instance: call.instance.clone(),
+            full: call.full,
+            arguments: u32::try_from(call.arguments.len()).unwrap_or(u32::MAX),
+        })
+        .collect()
+}
+
+fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
+    let conditional: Vec<(u32, ExprId, ExprId)> = model
+        .calls
+        .iter()
+        .enumerate()
+        .filter(|(_, call)| matches!(call.callee, Callee::Subroutine(_) | Callee::Block(_)))
+        .filter_map(|(at, call)| {
+            let path = model.statements.get(call.statement as usize)?.path;
+            (path != Exprs::TRUE || call.when != Exprs::TRUE).then_some((u32::try_from(at).ok()?, path, call.when))
+        })
+        .take(MAX_COMPARED)
+        .collect();
+    let mut pairs = Vec::new();
+    for (at, &(b, path_b, when_b)) in conditional.iter().enumerate() {
+        for &(a, path_a, when_a) in &conditional[..at] {
+            let all = [path_a, when_a, path_b, when_b];
+            if conditions::together(&model.exprs, &all) == conditions::Verdict::Never {
+                pairs.push((a, b));
+            }
+        }
+    }
+    pairs
+}
+
+/// Whether an object is shared by the program: not the block's own name, not a place unknown before the program runs.
+pub fn is_shared(object: &Object) -> bool {
+    !matches!(
+        object.class,
+        Class::LocalName | Class::LocalData | Class::Indirect | Class::Status | Class::InstanceData | Class::CodeBlock
+    )
+}
+
+/// The pin that a use drives.
+pub fn pin(it: &Use) -> Option<Pin> {
+    match it.mode {
+        Mode::Drive(pin) => Some(pin),
+        _ => None,
+    }
+}

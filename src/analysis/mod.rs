@@ -1,0 +1,16 @@
+//! Models to facts: what rules ask.
+//!
+//! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
+
+pub mod conditions;
+pub mod facts;
+pub mod program;
+
+/// A place of a program without its position: the `anchor`-th place that the unit's facts name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Site {
+    /// Index of the unit in its program.
+    pub unit: u32,
+    /// Index into the anchors of the unit's model.
+    pub anchor: u32,
+}

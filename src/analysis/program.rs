@@ -1,0 +1,388 @@
+//! A program as a whole: the access table over all units, the call graph, and what scans what.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::Site;
+use super::facts::{self, FactCall, UnitFacts, Use};
+use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
+use crate::model::object::{Area, Class, Object};
+use crate::model::unit::{Callee, Mode, Section};
+
+/// What runs code: code of one context never interrupts itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Context {
+    /// MAST, or OB 1 and what it calls. Also code whose caller is not known.
+    Cyclic,
+    Fast,
+    Event(u16),
+    /// OB 100 to 102: once, before the first scan.
+    Startup,
+    /// Any other OB, by number.
+    Interrupt(u32),
+}
+
+/// One use of an object, with the unit that it stands in.
+#[derive(Debug, Clone, Copy)]
+pub struct GlobalUse<'a> {
+    pub unit: u32,
+    /// What is done to the object. Of an actual parameter, this is what the called block's interface says.
+    pub mode: Mode,
+    pub it: &'a Use,
+}
+
+impl GlobalUse<'_> {
+    pub fn site(&self) -> Site {
+        Site { unit: self.unit, anchor: self.it.anchor }
+    }
+}
+
+/// An object with all its uses, in execution order.
+#[derive(Debug)]
+pub struct ObjectUses<'a> {
+    pub object: &'a Object,
+    /// Some unit computes with its value.
+    pub number: bool,
+    pub uses: Vec<GlobalUse<'a>>,
+}
+
+impl<'a> ObjectUses<'a> {
+    pub fn with_mode(&self, wanted: impl Fn(Mode) -> bool) -> impl Iterator<Item = &GlobalUse<'a>> {
+        self.uses.iter().filter(move |it| wanted(it.mode))
+    }
+
+    pub fn is_written(&self) -> bool {
+        self.uses.iter().any(|it| it.mode.writes() || matches!(it.mode, Mode::Drive(_)))
+    }
+
+    pub fn is_read(&self) -> bool {
+        self.uses.iter().any(|it| it.mode.reads())
+    }
+
+    /// Whether every unit that uses the object writes it before it reads it: a scratch value that does not outlive the
+    /// unit, so that units do not disturb one another through it.
+    pub fn is_scratch(&self) -> bool {
+        self.object.class == Class::Memory
+            && self.is_read()
+            && self.uses.iter().all(|it| !it.mode.is_edge() && it.mode != Mode::EdgeMemory)
+            && self.with_mode(Mode::reads).all(|it| !it.it.exposed)
+    }
+}
+
+/// A call resolved to a unit of the program, where it is one.
+#[derive(Debug, Clone, Copy)]
+pub struct GlobalCall<'a> {
+    pub unit: u32,
+    /// Index into the unit's calls.
+    pub index: u32,
+    pub it: &'a FactCall,
+    pub target: Option<u32>,
+}
+
+impl GlobalCall<'_> {
+    pub fn site(&self) -> Site {
+        Site { unit: self.unit, anchor: self.it.anchor }
+    }
+}
+
+#[derive(Debug)]
+pub struct ProgramIndex<'a> {
+    pub family: Family,
+    pub units: Vec<&'a UnitFacts>,
+    /// Objects that several units can share, by footprint.
+    pub objects: Vec<ObjectUses<'a>>,
+    pub calls: Vec<GlobalCall<'a>>,
+    /// Calls into each unit, as indices into `calls`.
+    pub callers: Vec<Vec<u32>>,
+    /// Contexts that run each unit, sorted.
+    pub contexts: Vec<Vec<Context>>,
+    /// Rank of each unit in the order of execution.
+    pub order: Vec<u32>,
+    /// Whether the program has a cyclic entry point and every block that it calls: only then does the absence of a
+    /// write, a read or a call say something.
+    pub complete: bool,
+    exclusive: FxHashSet<(u32, u32, u32)>,
+}
+
+impl<'a> ProgramIndex<'a> {
+    /// `units`: in path and file order.
+    pub fn new(family: Family, units: Vec<&'a UnitFacts>) -> Self {
+        let names = unit_names(&units);
+        let mut calls = Vec::new();
+        let mut callers = vec![Vec::new(); units.len()];
+        for (unit, facts) in units.iter().enumerate() {
+            for (index, it) in facts.calls.iter().enumerate() {
+                let target = target(&it.callee).and_then(|key| names.get(&key).copied());
+                if let Some(target) = target.filter(|_| it.reachable) {
+                    callers[target as usize].push(as_index(calls.len()));
+                }
+                calls.push(GlobalCall { unit: as_index(unit), index: as_index(index), it, target });
+            }
+        }
+        let contexts = contexts(&units, &calls);
+        let order = order(&units, &calls);
+        let complete = is_complete(&units, &calls);
+        let exclusive = units
+            .iter()
+            .enumerate()
+            .flat_map(|(unit, facts)| facts.exclusive_calls.iter().map(move |&(a, b)| (as_index(unit), a, b)))
+            .collect();
+        let objects = collect(&units, &order, &calls);
+        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive }
+    }
+
+    /// Whether two units can run in the same scan of the same context.
+    pub fn same_scan(&self, a: u32, b: u32) -> bool {
+        if a == b {
+            return true;
+        }
+        let (x, y) = (&self.contexts[a as usize], &self.contexts[b as usize]);
+        x.iter().any(|it| y.contains(it)) && !self.exclusive_units(a, b)
+    }
+
+    /// Whether two units are called under conditions that exclude each other, as far as their only calls tell.
+    fn exclusive_units(&self, a: u32, b: u32) -> bool {
+        let (up_a, up_b) = (self.only_calls(a), self.only_calls(b));
+        up_a.iter().any(|&(unit, x)| {
+            up_b.iter().any(|&(other, y)| unit == other && self.exclusive.contains(&(unit, x.min(y), x.max(y))))
+        })
+    }
+
+    /// From the unit upwards: caller and call, as long as there is only one.
+    fn only_calls(&self, unit: u32) -> Vec<(u32, u32)> {
+        let mut up = Vec::new();
+        let mut at = unit;
+        while let [only] = self.callers[at as usize][..] {
+            let call = &self.calls[only as usize];
+            if up.len() > 32 || self.is_entry(at) {
+                break;
+            }
+            up.push((call.unit, call.index));
+            at = call.unit;
+        }
+        up
+    }
+
+    /// Whether the system runs the unit by itself.
+    pub fn is_entry(&self, unit: u32) -> bool {
+        is_entry(&self.units[unit as usize].entity)
+    }
+
+    pub fn entity(&self, unit: u32) -> &Entity {
+        &self.units[unit as usize].entity
+    }
+
+    /// Heading of a unit.
+    pub fn heading(unit: u32) -> Site {
+        Site { unit, anchor: 0 }
+    }
+
+    /// Index of the data block, FB, ... of that name.
+    pub fn unit_named(&self, name: &BlockName) -> Option<u32> {
+        let at = self.units.iter().position(|it| matches!(&it.entity, Entity::Block { name: it, .. } if it == name));
+        at.map(as_index)
+    }
+
+    /// Pairs of distinct objects that share memory, by index, the earlier address first.
+    pub fn overlaps(&self) -> Vec<(u32, u32)> {
+        /// One object is compared with at most this many that start inside it.
+        const WINDOW: usize = 256;
+        let mut pairs = Vec::new();
+        for (at, a) in self.objects.iter().enumerate() {
+            let from = &a.object.footprint;
+            if !a.object.is_fixed() || matches!(from.area, Area::Symbol(_)) {
+                continue;
+            }
+            for (distance, b) in self.objects[at + 1..].iter().enumerate().take(WINDOW) {
+                if !from.overlaps(&b.object.footprint) {
+                    break;
+                }
+                if b.object.is_fixed() {
+                    pairs.push((as_index(at), as_index(at + 1 + distance)));
+                }
+            }
+        }
+        pairs
+    }
+}
+
+fn as_index(at: usize) -> u32 {
+    u32::try_from(at).unwrap_or(u32::MAX)
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+enum UnitName {
+    Subroutine(u32),
+    Block(BlockName),
+}
+
+fn unit_names(units: &[&UnitFacts]) -> FxHashMap<UnitName, u32> {
+    let mut names = FxHashMap::default();
+    for (at, facts) in units.iter().enumerate() {
+        let name = match &facts.entity {
+            Entity::Pl7 { part: Part::Subroutine(number), .. } => UnitName::Subroutine(*number),
+            Entity::Block { name, .. } => UnitName::Block(name.clone()),
+            _ => continue,
+        };
+        names.entry(name).or_insert(as_index(at));
+    }
+    names
+}
+
+fn target(callee: &Callee) -> Option<UnitName> {
+    match callee {
+        Callee::Subroutine(number) => Some(UnitName::Subroutine(*number)),
+        Callee::Block(name) => Some(UnitName::Block(name.clone())),
+        Callee::LocalInstance(_) | Callee::Function(_) | Callee::Instance(_) | Callee::Unknown => None,
+    }
+}
+
+fn is_entry(entity: &Entity) -> bool {
+    match entity {
+        Entity::Pl7 { part, .. } => !matches!(part, Part::Subroutine(_)),
+        Entity::Block { kind, .. } => *kind == BlockKind::Ob,
+        Entity::Listing => true,
+        Entity::Container => false,
+    }
+}
+
+/// The context that an entry point makes by itself.
+fn own_context(entity: &Entity) -> Option<Context> {
+    match entity {
+        Entity::Pl7 { task: Task::Mast, .. } => Some(Context::Cyclic),
+        Entity::Pl7 { task: Task::Fast, .. } => Some(Context::Fast),
+        Entity::Pl7 { task: Task::Event(number), .. } => Some(Context::Event(*number)),
+        Entity::Block { name: BlockName::Number(BlockKind::Ob, number), .. } => Some(match number {
+            1 => Context::Cyclic,
+            100..=102 => Context::Startup,
+            other => Context::Interrupt(*other),
+        }),
+        Entity::Listing => Some(Context::Cyclic),
+        Entity::Block { .. } | Entity::Container => None,
+    }
+}
+
+fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<Vec<Context>> {
+    let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
+    for call in calls {
+        if let Some(target) = call.target.filter(|_| call.it.reachable) {
+            callees[call.unit as usize].push(target);
+        }
+    }
+    let mut contexts: Vec<Vec<Context>> = vec![Vec::new(); units.len()];
+    for (unit, facts) in units.iter().enumerate() {
+        let Some(context) = own_context(&facts.entity).filter(|_| is_entry(&facts.entity)) else { continue };
+        let mut stack = vec![as_index(unit)];
+        while let Some(at) = stack.pop() {
+            if !contexts[at as usize].contains(&context) {
+                contexts[at as usize].push(context);
+                stack.extend(&callees[at as usize]);
+            }
+        }
+    }
+    for (unit, list) in contexts.iter_mut().enumerate() {
+        if list.is_empty() {
+            list.push(own_context(&units[unit].entity).unwrap_or(Context::Cyclic));
+        }
+        list.sort_unstable();
+    }
+    contexts
+}
+
+/// Depth-first from the entry points in file order, callees where they are called; then what nothing calls.
+fn order(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
+    let mut by_unit: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
+    for call in calls {
+        if let Some(target) = call.target {
+            by_unit[call.unit as usize].push(target);
+        }
+    }
+    let mut order = vec![u32::MAX; units.len()];
+    let mut next = 0;
+    let entries = (0..units.len()).filter(|&it| is_entry(&units[it].entity));
+    for root in entries.chain(0..units.len()) {
+        let mut stack = vec![as_index(root)];
+        while let Some(at) = stack.pop() {
+            if order[at as usize] != u32::MAX {
+                continue;
+            }
+            order[at as usize] = next;
+            next += 1;
+            stack.extend(by_unit[at as usize].iter().rev().filter(|&&it| order[it as usize] == u32::MAX));
+        }
+    }
+    order
+}
+
+/// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
+fn is_complete(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
+    let entry = units.iter().any(|it| match &it.entity {
+        Entity::Pl7 { part: Part::Main, .. } => true,
+        Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. } => true,
+        _ => false,
+    });
+    let closed = calls.iter().all(|call| match &call.it.callee {
+        Callee::Block(BlockName::Number(kind, _)) if kind.is_system() => true,
+        Callee::Subroutine(_) | Callee::Block(_) => call.target.is_some(),
+        Callee::Unknown => false,
+        Callee::LocalInstance(_) | Callee::Function(_) | Callee::Instance(_) => true,
+    });
+    entry && closed
+}
+
+/// What a called block of the program does with an actual parameter.
+fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit: u32, it: &Use) -> Mode {
+    let Some((call, name)) = &it.parameter else { return it.mode };
+    let Some(&target) = targets.get(&(unit, *call)) else { return it.mode };
+    let declared = &units[target as usize].declared;
+    match declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
+        Some(Section::Input) => Mode::Read,
+        Some(Section::Output) => Mode::Output,
+        _ => it.mode,
+    }
+}
+
+fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>]) -> Vec<ObjectUses<'a>> {
+    let targets = calls.iter().filter_map(|it| Some(((it.unit, it.index), it.target?))).collect();
+    let mut by_rank: Vec<u32> = (0..as_index(units.len())).collect();
+    by_rank.sort_by_key(|&it| order[it as usize]);
+    let mut ids: FxHashMap<(&'a crate::model::object::Footprint, crate::model::object::Type, bool), u32> =
+        FxHashMap::default();
+    let mut objects: Vec<ObjectUses<'a>> = Vec::new();
+    for unit in by_rank {
+        let facts = units[unit as usize];
+        let local: Vec<Option<u32>> = facts
+            .objects
+            .iter()
+            .map(|fact| {
+                if !facts::is_shared(&fact.object) {
+                    return None;
+                }
+                let key = (&fact.object.footprint, fact.object.ty, fact.object.indexed);
+                let id = *ids.entry(key).or_insert_with(|| {
+                    objects.push(ObjectUses { object: &fact.object, number: false, uses: Vec::new() });
+                    as_index(objects.len() - 1)
+                });
+                objects[id as usize].number |= fact.number;
+                Some(id)
+            })
+            .collect();
+        for it in &facts.uses {
+            if let Some(Some(id)) = local.get(it.object as usize) {
+                let mode = actual_mode(units, &targets, unit, it);
+                objects[*id as usize].uses.push(GlobalUse { unit, mode, it });
+            }
+        }
+    }
+    objects.retain(|it| !it.uses.is_empty());
+    objects.sort_by(|a, b| {
+        let (x, y) = (&a.object.footprint, &b.object.footprint);
+        (&x.area, x.start, std::cmp::Reverse(x.bits), a.object.ty, a.object.indexed).cmp(&(
+            &y.area,
+            y.start,
+            std::cmp::Reverse(y.bits),
+            b.object.ty,
+            b.object.indexed,
+        ))
+    });
+    objects
+}

@@ -1,0 +1,588 @@
+//! The database: salsa inputs and queries, the only place that ties the layers together.
+//!
+//! `file -> units -> tree -> model -> facts -> program -> findings`. A unit's tree, model and own findings hang on its
+//! text alone. What crosses units goes through [`facts`], which hold no position and are compared for equality, so that
+//! an edit which changes no fact stops there.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use rayon::prelude::*;
+use rowan::{TextRange, TextSize};
+use rustc_hash::{FxHashMap, FxHashSet};
+use salsa::Setter as _;
+use smol_str::SmolStr;
+
+use crate::analysis::Site;
+use crate::analysis::facts::UnitFacts;
+use crate::analysis::program::ProgramIndex;
+use crate::lint::settings::{ProgramScope, Settings};
+use crate::lint::suppress::{Code, Comment, Suppressions};
+use crate::lint::{
+    Check, Diagnostic, FileCx, Finding, Location, Outcome, ProgramCx, Rule, SourceView, UnitCx, Unread, UnreadReason,
+};
+use crate::model::entity::{Entity, Family};
+use crate::model::{UnitModel, lower};
+use crate::source::decode::{Encoding, SourceText};
+use crate::source::detect::{self, Detected, Dialect, FileHint};
+use crate::source::entity_from_address;
+use crate::source::line_index::LineIndex;
+use crate::source::split::{self, SplitHint};
+use crate::syntax::{self, Language, Parse, SyntaxKind};
+use crate::target::Target;
+
+/// A file as it was read.
+#[salsa::input(debug)]
+pub struct SourceFile {
+    /// As findings show it, with forward slashes.
+    #[returns(deref)]
+    pub path: String,
+    #[returns(ref)]
+    pub text: Arc<str>,
+    #[returns(copy)]
+    pub detected: Detected,
+}
+
+/// The one project: all files of a run, and what they are checked against.
+#[salsa::input(debug)]
+pub struct Project {
+    #[returns(deref)]
+    pub files: Vec<SourceFile>,
+    #[returns(ref)]
+    pub settings: Settings,
+}
+
+#[salsa::db]
+pub trait Db: salsa::Database {
+    /// Set once, never swapped: salsa does not track this handle.
+    fn project(&self) -> Project;
+}
+
+/// A block, section, subroutine or listing. Its identity is its file and key; its text may change.
+#[salsa::tracked(debug)]
+pub struct Unit<'db> {
+    #[returns(copy)]
+    pub file: SourceFile,
+    /// Unique in the file: `FC1`, `MAST - SR10#1`.
+    #[returns(ref)]
+    pub key: SmolStr,
+    #[tracked]
+    #[returns(ref)]
+    pub text: Arc<str>,
+    #[tracked]
+    #[returns(copy)]
+    pub language: Language,
+    #[tracked]
+    #[returns(ref)]
+    pub entity: Entity,
+    /// Name of the language when it is one that is not read.
+    #[tracked]
+    #[returns(copy)]
+    pub unsupported: Option<&'static str>,
+}
+
+/// Units of a file with their offsets in bytes. They tile the text.
+#[salsa::tracked(returns(deref), no_eq)]
+pub fn layout<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[(Unit<'db>, u32)]> {
+    let text = file.text(db);
+    let project = db.project();
+    let settings = project.settings(db);
+    let entity = settings.entity_address(file.path(db)).and_then(entity_from_address);
+    let hint = SplitHint { entity, mnemonics: None };
+    let spans = split::split(text, file.detected(db), &hint);
+    spans
+        .into_iter()
+        .map(|span| {
+            let part: Arc<str> = text.get(std::ops::Range::<usize>::from(span.range)).unwrap_or_default().into();
+            let unit = Unit::new(db, file, span.key, part, span.language, span.entity, span.unsupported);
+            (unit, u32::from(span.range.start()))
+        })
+        .collect()
+}
+
+/// Units of a file, without their places.
+#[salsa::tracked(returns(deref))]
+pub fn units<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Unit<'db>]> {
+    layout(db, file).iter().map(|it| it.0).collect()
+}
+
+/// The lossless tree of a unit. `no_eq`: the text changed, so the tree did.
+#[salsa::tracked(no_eq, lru = 256)]
+pub fn tree<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Parse {
+    if unit.unsupported(db).is_some() {
+        return syntax::opaque(unit.text(db));
+    }
+    syntax::parse(unit.language(db), unit.text(db))
+}
+
+/// What the unit's code does. `no_eq`: it holds ranges.
+#[salsa::tracked(no_eq)]
+pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitModel {
+    lower::lower(&tree(db, unit).syntax(), unit.entity(db).clone(), unit.language(db))
+}
+
+/// Firewall: what the unit tells its program, without places.
+#[salsa::tracked]
+pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitFacts {
+    UnitFacts::new(model(db, unit))
+}
+
+/// Findings of the rules that look at one unit, with ranges relative to it.
+#[salsa::tracked]
+pub fn unit_findings<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Ran<TextRange> {
+    let project = db.project();
+    let settings = project.settings(db);
+    let target = target_of(settings);
+    let cx = UnitCx::new(model(db, unit), tree(db, unit), unit.text(db), settings, &target);
+    run_rules(settings, |rule, findings| match rule.check {
+        Check::Unit(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
+        Check::Program(_) | Check::File(_) => {}
+    })
+}
+
+/// Files that make up one program, in path order. The key is the folder, or the file when it stands alone.
+#[salsa::tracked(debug)]
+pub struct Program<'db> {
+    #[returns(ref)]
+    pub key: String,
+    #[returns(copy)]
+    pub family: Family,
+    #[tracked]
+    #[returns(deref)]
+    pub files: Vec<SourceFile>,
+}
+
+/// What of a file says which program it belongs to.
+#[salsa::tracked(returns(deref))]
+fn named_entities<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Entity]> {
+    let entities = units(db, file).iter().map(|unit| unit.entity(db));
+    entities.filter(|it| **it != Entity::Container).cloned().collect()
+}
+
+/// The programs of the project.
+///
+/// Files of one folder and vendor are one program, unless two of them define the same entity (two variants of one
+/// machine side by side) or hold code that does not say what it is: those stand alone.
+#[salsa::tracked(returns(deref))]
+pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
+    let project = db.project();
+    let scope = project.settings(db).scope();
+    let mut folders: Vec<(String, Family, Vec<SourceFile>)> = Vec::new();
+    let mut alone: Vec<(Family, SourceFile)> = Vec::new();
+    let mut index: FxHashMap<(String, Family), usize> = FxHashMap::default();
+    for &file in project.files(db) {
+        let Some(family) = family(file.detected(db)) else { continue };
+        let entities = named_entities(db, file);
+        if scope == ProgramScope::File || entities.is_empty() || entities.contains(&Entity::Listing) {
+            alone.push((family, file));
+            continue;
+        }
+        let folder = file.path(db).rsplit_once('/').map_or("", |it| it.0).to_owned();
+        let at = *index.entry((folder.clone(), family)).or_insert_with(|| {
+            folders.push((folder, family, Vec::new()));
+            folders.len() - 1
+        });
+        folders[at].2.push(file);
+    }
+    let mut programs = Vec::new();
+    for (folder, family, files) in folders {
+        let mut seen = FxHashSet::default();
+        let clash = files.iter().any(|&file| {
+            let mut own = FxHashSet::default();
+            let entities = named_entities(db, file).iter().filter(|it| own.insert(*it));
+            // A file that repeats an entity is judged on its own; two files that share one are two programs.
+            entities.filter(|it| !seen.insert(*it)).count() > 0
+        });
+        if clash && scope == ProgramScope::Auto {
+            alone.extend(files.into_iter().map(|file| (family, file)));
+        } else {
+            programs.push(Program::new(db, folder, family, files));
+        }
+    }
+    for (family, file) in alone {
+        programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file]));
+    }
+    programs.into_boxed_slice()
+}
+
+/// The vendor family of a file that is linted.
+pub fn family(detected: Detected) -> Option<Family> {
+    match detected {
+        Detected::Exchange | Detected::Pasted(_) => Some(Family::Pl7),
+        Detected::Step7 => Some(Family::Step7),
+        _ => None,
+    }
+}
+
+/// The program that a file belongs to.
+#[salsa::tracked]
+pub fn program_of<'db>(db: &'db dyn Db, file: SourceFile) -> Option<Program<'db>> {
+    programs(db).iter().copied().find(|it| it.files(db).contains(&file))
+}
+
+/// Units of a program: file order, then order in the file.
+#[salsa::tracked(returns(deref))]
+pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'db>]> {
+    program.files(db).iter().flat_map(|&file| units(db, file).iter().copied()).collect()
+}
+
+/// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].
+#[salsa::tracked]
+pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
+    let project = db.project();
+    let settings = project.settings(db);
+    let target = target_of(settings);
+    let facts = program_units(db, program).iter().map(|&unit| facts(db, unit)).collect();
+    let index = ProgramIndex::new(program.family(db), facts);
+    let cx = ProgramCx::new(&index, settings, &target);
+    run_rules(settings, |rule, findings| match rule.check {
+        Check::Program(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
+        Check::Unit(_) | Check::File(_) => {}
+    })
+}
+
+/// Findings of a program by the file of their primary place.
+#[salsa::tracked(no_eq)]
+fn program_findings_by_file<'db>(db: &'db dyn Db, program: Program<'db>) -> FxHashMap<SourceFile, Vec<Finding<Site>>> {
+    let units = program_units(db, program);
+    let mut by_file: FxHashMap<SourceFile, Vec<Finding<Site>>> = FxHashMap::default();
+    for finding in &program_findings(db, program).findings {
+        if let Some(unit) = units.get(finding.place.unit as usize) {
+            by_file.entry(unit.file(db)).or_default().push(finding.clone());
+        }
+    }
+    by_file
+}
+
+/// A place in a file of the database.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct FilePlace {
+    pub file: SourceFile,
+    pub range: TextRange,
+}
+
+/// A finding with the entity that holds it and, when suppressed, the reason given.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileFinding {
+    pub finding: Finding<FilePlace>,
+    pub entity: String,
+    pub suppressed: Option<String>,
+}
+
+/// What came of a set of rules.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ran<P> {
+    pub findings: Vec<Finding<P>>,
+    /// Codes of rules that panicked.
+    pub failed: Vec<&'static str>,
+}
+
+/// Runs each active rule apart from the others: one that panics is lost alone. Rules never query the database, so no
+/// cancellation passes through here.
+fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec<Finding<P>>)) -> Ran<P> {
+    let mut ran = Ran { findings: Vec::new(), failed: Vec::new() };
+    for rule in settings.active() {
+        let before = ran.findings.len();
+        if catch_unwind(AssertUnwindSafe(|| run(rule, &mut ran.findings))).is_err() {
+            ran.findings.truncate(before);
+            ran.failed.push(rule.code);
+        }
+    }
+    ran
+}
+
+fn target_of(settings: &Settings) -> Target {
+    settings.controller().and_then(|it| it.parse().ok()).unwrap_or_default()
+}
+
+/// All findings of a file, sorted by place and code; suppressed ones are marked.
+#[salsa::tracked(returns(deref))]
+pub fn file_findings<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[FileFinding]> {
+    let project = db.project();
+    let settings = project.settings(db);
+    let selection = settings.selection(file.path(db));
+    let layout = layout(db, file);
+    let mut found = Vec::new();
+    for &(unit, offset) in layout {
+        for finding in &unit_findings(db, unit).findings {
+            let shifted =
+                finding.clone().map(|it| Some(FilePlace { file, range: it.checked_add(TextSize::new(offset))? }));
+            found.extend(shifted);
+        }
+    }
+    if let Some(program) = *program_of(db, file) {
+        let units = program_units(db, program);
+        for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
+            found.extend(finding.clone().map(|site| place(db, units, site)));
+        }
+    }
+    found.retain_mut(|it| match selection.severity(it.rule, it.severity) {
+        Some(severity) => {
+            it.severity = severity;
+            true
+        }
+        None => false,
+    });
+    let mut suppressions = suppressions(db, file);
+    let lines = if suppressions.is_empty() { None } else { Some(LineIndex::new(file.text(db))) };
+    let mut findings: Vec<FileFinding> = found
+        .into_iter()
+        .map(|finding| {
+            let line = lines.as_ref().map(|it| it.line_col(finding.place.range.start()).line);
+            let suppressed = line.and_then(|it| suppressions.suppress(finding.rule, it)).map(str::to_owned);
+            FileFinding { entity: entity_at(db, layout, finding.place.range.start()), finding, suppressed }
+        })
+        .collect();
+    let leftovers =
+        suppressions.leftovers(crate::lint::rules(), |rule| selection.severity(rule, rule.severity).is_some());
+    let cx = FileCx { text: file.text(db), leftovers: &leftovers };
+    let ran = run_rules(settings, |rule, findings| match rule.check {
+        Check::File(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
+        Check::Unit(_) | Check::Program(_) => {}
+    });
+    for finding in ran.findings {
+        let Some(mut finding) = finding.map(|range| Some(FilePlace { file, range })) else { continue };
+        let Some(severity) = selection.severity(finding.rule, finding.severity) else { continue };
+        finding.severity = severity;
+        let entity = entity_at(db, layout, finding.place.range.start());
+        findings.push(FileFinding { finding, entity, suppressed: None });
+    }
+    findings.sort_by(|a, b| {
+        let key =
+            |it: &FileFinding| (it.finding.place.range.start(), it.finding.place.range.end(), it.finding.rule.code);
+        key(a).cmp(&key(b)).then_with(|| a.finding.message.cmp(&b.finding.message))
+    });
+    findings.into_boxed_slice()
+}
+
+/// Where a site lies.
+fn place(db: &dyn Db, units: &[Unit<'_>], site: Site) -> Option<FilePlace> {
+    let unit = *units.get(site.unit as usize)?;
+    let file = unit.file(db);
+    let offset = layout(db, file).iter().find(|it| it.0 == unit)?.1;
+    let range = model(db, unit).place(site.anchor).checked_add(TextSize::new(offset))?;
+    Some(FilePlace { file, range })
+}
+
+fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
+    let after = layout.partition_point(|it| it.1 <= u32::from(at));
+    let unit = after.checked_sub(1).and_then(|it| layout.get(it));
+    unit.map_or_else(String::new, |it| it.0.entity(db).to_string())
+}
+
+/// Suppression comments of a file.
+fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
+    let text = file.text(db);
+    if memchr::memmem::find(text.as_bytes(), b"plclint:").is_none() {
+        return Suppressions::new([], Code::default());
+    }
+    let lines = LineIndex::new(text);
+    let line = |at: TextSize| lines.line_col(at).line;
+    let mut comments = Vec::new();
+    let mut code = Code::default();
+    for &(unit, offset) in layout(db, file) {
+        for element in tree(db, unit).syntax().descendants_with_tokens() {
+            let range = element.text_range() + TextSize::new(offset);
+            match element.kind() {
+                SyntaxKind::Whitespace | SyntaxKind::Newline => {}
+                SyntaxKind::Comment | SyntaxKind::UnclosedComment => comments.push(range),
+                SyntaxKind::Sentence => code.statements.push((line(range.start()), line(range.end()))),
+                _ if element.as_token().is_some() => {
+                    let at = line(range.start());
+                    if code.lines.last().is_none_or(|&it| it < at) {
+                        code.lines.push(at);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    let comments = comments.into_iter().filter_map(|range| {
+        let text = text.get(std::ops::Range::<usize>::from(range))?;
+        let last = range.end().checked_sub(TextSize::new(1)).unwrap_or(range.start());
+        Some(Comment { text, start: range.start(), lines: (line(range.start()), line(last)) })
+    });
+    Suppressions::new(comments, code)
+}
+
+/// The database. `Clone` gives a snapshot for another thread; a write waits until all are dropped.
+#[salsa::db]
+#[derive(Clone)]
+pub struct RootDatabase {
+    project: Option<Project>,
+    storage: salsa::Storage<Self>,
+}
+
+/// Events of the database, for tests of what was run again.
+pub type EventLog = Arc<Mutex<Vec<salsa::Event>>>;
+
+impl RootDatabase {
+    pub fn new(settings: Settings, events: Option<EventLog>) -> Self {
+        let log = events.map(|events| -> Box<dyn Fn(salsa::Event) + Send + Sync> {
+            Box::new(move |event| {
+                if let Ok(mut events) = events.lock() {
+                    events.push(event);
+                }
+            })
+        });
+        let mut db = Self { project: None, storage: salsa::Storage::new(log) };
+        db.project = Some(Project::new(&db, Vec::new(), settings));
+        db
+    }
+
+    /// Adds files, in the order given.
+    pub fn set_files(&mut self, inputs: impl IntoIterator<Item = Input>) -> Vec<SourceFile> {
+        let files: Vec<SourceFile> =
+            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text, it.detected)).collect();
+        self.project().set_files(self).to(files.clone());
+        files
+    }
+
+    /// Gives a file another text; nothing happens when it is the same.
+    pub fn set_text(&mut self, file: SourceFile, text: impl Into<Arc<str>>) {
+        let text = text.into();
+        if **file.text(self) != *text {
+            file.set_text(self).to(text);
+        }
+    }
+}
+
+#[salsa::db]
+impl salsa::Database for RootDatabase {}
+
+#[salsa::db]
+impl Db for RootDatabase {
+    fn project(&self) -> Project {
+        match self.project {
+            Some(project) => project,
+            None => unreachable!("`new` sets the project before it returns"),
+        }
+    }
+}
+
+/// Names of the tracked functions that ran since the last call, such as `facts(Id(0))`.
+pub fn take_executed(db: &RootDatabase, events: &EventLog) -> Vec<String> {
+    use salsa::Database as _;
+    let events = events.lock().map(|mut it| std::mem::take(&mut *it)).unwrap_or_default();
+    db.attach(|_| {
+        let executed = events.iter().filter_map(|event| match event.kind {
+            salsa::EventKind::WillExecute { database_key } => Some(format!("{database_key:?}")),
+            _ => None,
+        });
+        executed.collect()
+    })
+}
+
+/// A file to check.
+#[derive(Debug, Clone)]
+pub struct Input {
+    /// As findings shall show it.
+    pub path: String,
+    pub source: SourceText,
+    pub detected: Detected,
+}
+
+impl Input {
+    /// Text that is already decoded, recognised by its path and content unless `dialect` says what it is.
+    pub fn from_text(path: &str, text: &str, dialect: Dialect) -> Self {
+        let hint = FileHint { path: Some(Path::new(path)), explicit: true, dialect };
+        let detected = detect::detect(hint, text);
+        let source =
+            SourceText { text: text.into(), encoding: Encoding::Utf8, bom: false, malformed: false, mixed: false };
+        Self { path: path.to_owned(), source, detected }
+    }
+}
+
+/// Checks files on the current rayon pool. The outcome is the same for any number of threads.
+pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
+    let start = Instant::now();
+    inputs.sort_by(|a, b| a.path.cmp(&b.path));
+    inputs.dedup_by(|a, b| a.path == b.path);
+    let mut outcome = Outcome { active: settings.active(), ..Outcome::default() };
+    let (linted, left): (Vec<Input>, Vec<Input>) = inputs.into_iter().partition(|it| family(it.detected).is_some());
+    for it in left {
+        let reason = match it.detected {
+            Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),
+            _ => UnreadReason::NotPlc,
+        };
+        outcome.unread.push(Unread { path: it.path, reason });
+    }
+    let encodings: Vec<&'static str> = linted.iter().map(|it| it.source.encoding.as_str()).collect();
+    let mut db = RootDatabase::new(settings, None);
+    // One run, one revision: nothing is ever evicted, and the lock of the least-recently-used list is not taken.
+    tree::set_lru_capacity(&mut db, 0);
+    let files = db.set_files(linted);
+    files.par_iter().for_each_with(db.clone(), |db, &file| {
+        for &unit in units(db, file) {
+            facts(db, unit);
+            unit_findings(db, unit);
+        }
+    });
+    let found: Vec<Vec<FileFinding>> =
+        files.par_iter().map_with(db.clone(), |db, &file| file_findings(db, file).to_vec()).collect();
+    let indices: FxHashMap<SourceFile, u32> = files.iter().zip(0..).map(|(&file, at)| (file, at)).collect();
+    for (at, &file) in files.iter().enumerate() {
+        let mut view = SourceView {
+            path: file.path(&db).to_owned(),
+            text: file.text(&db).clone(),
+            encoding: encodings[at],
+            dialect: dialect_name(&db, file),
+            entities: 0,
+            not_understood: 0,
+        };
+        for &unit in units(&db, file) {
+            if *unit.entity(&db) != Entity::Container {
+                view.entities += 1;
+            }
+            if unit.unsupported(&db).is_some() {
+                view.not_understood += unit.text(&db).len();
+            } else {
+                view.not_understood += not_understood(tree(&db, unit));
+            }
+            for code in &unit_findings(&db, unit).failed {
+                outcome.internal_errors.push(format!("{}: {}: rule {code} failed", view.path, unit.entity(&db)));
+            }
+        }
+        outcome.files.push(view);
+    }
+    for &program in programs(&db) {
+        for code in &program_findings(&db, program).failed {
+            outcome.internal_errors.push(format!("{}: rule {code} failed", program.key(&db)));
+        }
+    }
+    for finding in found.into_iter().flatten() {
+        let name = |place: FilePlace| Some(Location { file: *indices.get(&place.file)?, range: place.range });
+        if let Some(it) = finding.finding.map(name) {
+            let (entity, suppressed) = (finding.entity, finding.suppressed);
+            outcome.diagnostics.push(Diagnostic { finding: it, entity, suppressed });
+        }
+    }
+    outcome.elapsed = start.elapsed();
+    // Dropping the trees takes as long as building them, and the process is about to end.
+    std::mem::forget(db);
+    outcome
+}
+
+/// Bytes of tokens that the syntax could not place.
+fn not_understood(parse: &Parse) -> usize {
+    if parse.errors().is_empty() {
+        return 0;
+    }
+    let root = parse.syntax();
+    let errors = root.descendants().filter(|it| it.kind() == SyntaxKind::Error);
+    errors.map(|it| usize::from(it.text_range().len())).sum()
+}
+
+fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
+    let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
+    match (file.detected(db), language) {
+        (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
+        (_, Some(Language::Awl(syntax::Mnemonics::German))) => "STEP 7 AWL, German mnemonics".to_owned(),
+        (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
+        (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),
+        (_, Some(Language::Pl7St)) => "PL7 structured text".to_owned(),
+        _ => "PLC text".to_owned(),
+    }
+}

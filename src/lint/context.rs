@@ -1,0 +1,78 @@
+//! What a rule is given.
+
+use std::cell::OnceCell;
+
+use rowan::TextRange;
+use rustc_hash::FxHashMap;
+
+use super::settings::Settings;
+use super::suppress::Leftover;
+use crate::analysis::program::ProgramIndex;
+use crate::model::UnitModel;
+use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
+use crate::target::Target;
+
+/// One unit: its model, its tree, its text. Places are ranges relative to the unit.
+pub struct UnitCx<'a> {
+    pub model: &'a UnitModel,
+    pub parse: &'a Parse,
+    pub text: &'a str,
+    pub settings: &'a Settings,
+    pub target: &'a Target,
+    nodes: OnceCell<FxHashMap<SyntaxKind, Vec<SyntaxNode>>>,
+}
+
+impl<'a> UnitCx<'a> {
+    pub(crate) fn new(
+        model: &'a UnitModel,
+        parse: &'a Parse,
+        text: &'a str,
+        settings: &'a Settings,
+        target: &'a Target,
+    ) -> Self {
+        Self { model, parse, text, settings, target, nodes: OnceCell::new() }
+    }
+
+    /// Every node of a kind, in the order of the text. The tree is walked once for all rules.
+    pub fn nodes(&self, kind: SyntaxKind) -> &[SyntaxNode] {
+        let nodes = self.nodes.get_or_init(|| {
+            let mut nodes: FxHashMap<SyntaxKind, Vec<SyntaxNode>> = FxHashMap::default();
+            for node in self.parse.syntax().descendants() {
+                nodes.entry(node.kind()).or_default().push(node);
+            }
+            nodes
+        });
+        nodes.get(&kind).map_or(&[], Vec::as_slice)
+    }
+
+    /// Text of a place; empty when the range is not one.
+    pub fn text_of(&self, range: TextRange) -> &'a str {
+        self.text.get(usize::from(range.start())..usize::from(range.end())).unwrap_or_default()
+    }
+}
+
+/// A program: the facts of all its units. Places are sites, which have no position.
+pub struct ProgramCx<'a> {
+    pub program: &'a ProgramIndex<'a>,
+    pub settings: &'a Settings,
+    pub target: &'a Target,
+    overlaps: OnceCell<Vec<(u32, u32)>>,
+}
+
+impl<'a> ProgramCx<'a> {
+    pub(crate) fn new(program: &'a ProgramIndex<'a>, settings: &'a Settings, target: &'a Target) -> Self {
+        Self { program, settings, target, overlaps: OnceCell::new() }
+    }
+
+    /// See [`ProgramIndex::overlaps`].
+    pub fn overlaps(&self) -> &[(u32, u32)] {
+        self.overlaps.get_or_init(|| self.program.overlaps())
+    }
+}
+
+/// A file after all rules of its units and its program ran. Places are ranges of the file.
+pub struct FileCx<'a> {
+    pub text: &'a str,
+    /// Words of suppression comments that suppressed nothing, or name no rule.
+    pub leftovers: &'a [Leftover],
+}

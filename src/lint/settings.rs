@@ -1,0 +1,679 @@
+//! `plclint.toml` and what the command line says on top of it, as one value.
+//!
+//! This module reads text; finding and opening the file is the command line's affair.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use ignore::gitignore::{Gitignore, GitignoreBuilder};
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::finding::Severity;
+use super::nearest::nearest;
+use super::rule::{Rule, rules};
+use super::select::{Selection, Selector};
+
+/// Name of the configuration file.
+pub const FILE_NAME: &str = "plclint.toml";
+
+/// Everything that a run is configured with. A clone is cheap; two settings are equal when they were read from the
+/// same words in the same folder.
+#[derive(Clone)]
+pub struct Settings(Arc<Inner>);
+
+struct Inner {
+    folders: Folders,
+    file: File,
+    overrides: Overrides,
+    base: Selection,
+    per_file: Vec<PerFileRules>,
+    include: Option<Gitignore>,
+    exclude: Option<Gitignore>,
+    entities: Vec<(Gitignore, usize)>,
+}
+
+struct PerFileRules {
+    glob: Gitignore,
+    select: Vec<Selector>,
+    ignore: Vec<Selector>,
+}
+
+impl PartialEq for Settings {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+            || (self.0.folders == other.0.folders
+                && self.0.file == other.0.file
+                && self.0.overrides == other.0.overrides
+                && self.0.base == other.0.base)
+    }
+}
+
+impl Eq for Settings {}
+
+impl fmt::Debug for Settings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Settings").field("file", &self.0.file).field("overrides", &self.0.overrides).finish()
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let file = File::default();
+        let mut base = Selection::none(rules());
+        base.select(&[Selector::Default]);
+        Self(Arc::new(Inner {
+            folders: Folders::default(),
+            file,
+            overrides: Overrides::default(),
+            base,
+            per_file: Vec::new(),
+            include: None,
+            exclude: None,
+            entities: Vec::new(),
+        }))
+    }
+}
+
+/// Where the globs of a configuration start, and where relative paths do. Both absolute.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Folders {
+    /// Folder of the configuration file.
+    pub root: PathBuf,
+    /// Working folder of the process.
+    pub current: PathBuf,
+}
+
+/// What the command line says. It is a layer above the file: `select` takes the place of the file's whole selection,
+/// the rest adds to it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Overrides {
+    pub select: Option<Vec<String>>,
+    pub extend_select: Vec<String>,
+    pub ignore: Vec<String>,
+    /// In the order given: the last word wins.
+    pub severity: Vec<(String, Severity)>,
+    pub controller: Option<String>,
+    pub encoding: Option<String>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+struct File {
+    target: Target,
+    objects: BTreeMap<String, u32>,
+    files: Files,
+    entity: Vec<EntityHint>,
+    task: Vec<TaskConfig>,
+    event: Vec<EventConfig>,
+    program: Program,
+    rules: Rules,
+    per_file: Vec<PerFile>,
+}
+
+/// The controller that programs are for.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Target {
+    /// `TSX 37-22`, `CPU 314`.
+    pub controller: Option<String>,
+    /// `V3`, where the documents distinguish versions.
+    pub version: Option<String>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Files {
+    include: Vec<Spanned<String>>,
+    exclude: Vec<Spanned<String>>,
+    encoding: Option<Spanned<String>>,
+}
+
+/// Says what a file holds that does not say so itself.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EntityHint {
+    path: Spanned<String>,
+    address: String,
+}
+
+/// A task of the application, and the channels that it exchanges.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaskConfig {
+    /// `MAST`, `FAST`.
+    pub name: String,
+    /// `20ms`.
+    pub period: Option<String>,
+    /// `%I3.8:8`.
+    #[serde(default)]
+    pub io: Vec<String>,
+}
+
+/// An event and the channel that raises it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EventConfig {
+    /// i of EVTi.
+    pub number: u16,
+    /// `%I1.0`.
+    pub trigger: Option<String>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Program {
+    scope: ProgramScope,
+}
+
+/// Which files make up one program.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProgramScope {
+    /// As the files themselves suggest.
+    #[default]
+    Auto,
+    /// Each file is a program.
+    File,
+    /// The files of one folder are a program.
+    Folder,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+struct Rules {
+    select: Option<Vec<Spanned<String>>>,
+    extend_select: Vec<Spanned<String>>,
+    ignore: Vec<Spanned<String>>,
+    severity: BTreeMap<Spanned<String>, Spanned<String>>,
+    options: BTreeMap<Spanned<String>, toml::Table>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PerFile {
+    path: Spanned<String>,
+    #[serde(default)]
+    select: Vec<Spanned<String>>,
+    #[serde(default)]
+    ignore: Vec<Spanned<String>>,
+}
+
+/// A configuration that cannot be used, and where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ConfigError {
+    pub origin: Origin,
+    pub message: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// A place in a file; line and column (in characters) count from 1.
+    File { path: PathBuf, line: usize, column: usize },
+    /// An option of the command line: `--select`.
+    Option(&'static str),
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.origin {
+            Origin::File { path, line, column } => write!(f, "{}:{line}:{column}: ", path.display())?,
+            Origin::Option(name) => write!(f, "{name}: ")?,
+        }
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for ConfigError {}
+
+/// The text of a configuration file, for errors.
+struct Text<'a> {
+    path: &'a Path,
+    text: &'a str,
+}
+
+impl Text<'_> {
+    fn error(&self, span: Option<Range<usize>>, message: impl Into<String>) -> ConfigError {
+        let offset = span.map_or(0, |it| it.start);
+        let before = self.text.get(..offset).unwrap_or(self.text);
+        let start = before.rfind('\n').map_or(0, |it| it + 1);
+        let origin = Origin::File {
+            path: self.path.to_owned(),
+            line: before.matches('\n').count() + 1,
+            column: before[start..].chars().count() + 1,
+        };
+        ConfigError { origin, message: message.into() }
+    }
+
+    fn selectors(&self, registry: &'static [Rule], words: &[Spanned<String>]) -> Result<Vec<Selector>, ConfigError> {
+        words.iter().map(|it| self.selector(registry, it)).collect()
+    }
+
+    fn selector(&self, registry: &'static [Rule], word: &Spanned<String>) -> Result<Selector, ConfigError> {
+        Selector::parse(registry, word.get_ref()).map_err(|it| self.error(Some(word.span()), it.to_string()))
+    }
+
+    fn globs(&self, globs: &[Spanned<String>]) -> Result<Option<Gitignore>, ConfigError> {
+        if globs.is_empty() {
+            return Ok(None);
+        }
+        let mut builder = GitignoreBuilder::new("");
+        for glob in globs {
+            if let Err(error) = builder.add_line(None, glob.get_ref()) {
+                return Err(self.error(Some(glob.span()), error.to_string()));
+            }
+        }
+        builder.build().map(Some).map_err(|it| self.error(None, it.to_string()))
+    }
+
+    fn glob(&self, glob: &Spanned<String>) -> Result<Gitignore, ConfigError> {
+        Ok(self.globs(std::slice::from_ref(glob))?.unwrap_or_else(Gitignore::empty))
+    }
+}
+
+impl Settings {
+    /// Settings from the text of a configuration file, which `path` names in errors, and from the command line.
+    pub fn parse(text: &str, path: &Path, folders: Folders, overrides: Overrides) -> Result<Self, ConfigError> {
+        Self::parse_with(rules(), text, path, folders, overrides)
+    }
+
+    /// Settings without a configuration file.
+    pub fn without_file(folders: Folders, overrides: Overrides) -> Result<Self, ConfigError> {
+        Self::parse("", Path::new(FILE_NAME), folders, overrides)
+    }
+
+    pub(crate) fn parse_with(
+        registry: &'static [Rule],
+        text: &str,
+        path: &Path,
+        folders: Folders,
+        overrides: Overrides,
+    ) -> Result<Self, ConfigError> {
+        let text = Text { path, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
+        let mut file: File = toml::from_str(text.text).map_err(|it| text.error(it.span(), it.message().trim()))?;
+        if let Some(encoding) = &file.files.encoding
+            && !is_encoding(encoding.get_ref())
+        {
+            return Err(text.error(Some(encoding.span()), unknown_encoding(encoding.get_ref())));
+        }
+        if let Some(encoding) = &overrides.encoding
+            && !is_encoding(encoding)
+        {
+            return Err(ConfigError { origin: Origin::Option("--encoding"), message: unknown_encoding(encoding) });
+        }
+        let base = selection(registry, &text, &file.rules, &overrides)?;
+        let mut per_file = Vec::new();
+        for it in &file.per_file {
+            per_file.push(PerFileRules {
+                glob: text.glob(&it.path)?,
+                select: text.selectors(registry, &it.select)?,
+                ignore: text.selectors(registry, &it.ignore)?,
+            });
+        }
+        let mut options = BTreeMap::new();
+        for (word, table) in std::mem::take(&mut file.rules.options) {
+            let Selector::Rule(code) = text.selector(registry, &word)? else {
+                let message = format!("`{}` is not one rule: options belong to a rule", word.get_ref());
+                return Err(text.error(Some(word.span()), message));
+            };
+            let name = registry.iter().find(|it| it.code == code).map_or(code, |it| it.name);
+            options.insert(Spanned::new(word.span(), name.to_owned()), table);
+        }
+        file.rules.options = options;
+        let mut entities = Vec::new();
+        for (index, hint) in file.entity.iter().enumerate() {
+            entities.push((text.glob(&hint.path)?, index));
+        }
+        let include = text.globs(&file.files.include)?;
+        let exclude = text.globs(&file.files.exclude)?;
+        Ok(Self(Arc::new(Inner { folders, file, overrides, base, per_file, include, exclude, entities })))
+    }
+
+    /// Which rules are on for a file.
+    pub fn selection(&self, path: &str) -> Selection {
+        let mut selection = self.0.base.clone();
+        if !self.0.per_file.is_empty()
+            && let Some(path) = self.relative(path)
+        {
+            for it in &self.0.per_file {
+                if matches(&it.glob, &path) {
+                    selection.select(&it.select);
+                    selection.ignore(&it.ignore);
+                }
+            }
+        }
+        selection
+    }
+
+    /// The severity of a rule for a file; `None` when the rule is off there. Asking for many rules of one file, ask
+    /// [`Self::selection`] once.
+    pub fn enabled(&self, rule: &Rule, path: &str) -> Option<Severity> {
+        self.selection(path).severity(rule, rule.severity)
+    }
+
+    /// The rules that are on somewhere, in the order of codes.
+    pub fn active(&self) -> Vec<&'static Rule> {
+        let mut selection = self.0.base.clone();
+        for it in &self.0.per_file {
+            selection.select(&it.select);
+        }
+        selection.rules().collect()
+    }
+
+    pub fn controller(&self) -> Option<&str> {
+        self.0.overrides.controller.as_deref().or(self.0.file.target.controller.as_deref())
+    }
+
+    /// The controller's version; none when the command line names another controller than the file.
+    pub fn version(&self) -> Option<&str> {
+        let target = &self.0.file.target;
+        match &self.0.overrides.controller {
+            Some(controller) if target.controller.as_ref() != Some(controller) => None,
+            _ => target.version.as_deref(),
+        }
+    }
+
+    /// Configured number of objects of a family, by its mnemonic: `M`, `MW`.
+    pub fn objects(&self, family: &str) -> Option<u32> {
+        self.0.file.objects.get(family).copied()
+    }
+
+    /// Every configured number of objects, in the order of mnemonics.
+    pub fn all_objects(&self) -> impl Iterator<Item = (&str, u32)> {
+        self.0.file.objects.iter().map(|(family, &count)| (family.as_str(), count))
+    }
+
+    pub fn tasks(&self) -> &[TaskConfig] {
+        &self.0.file.task
+    }
+
+    pub fn events(&self) -> &[EventConfig] {
+        &self.0.file.event
+    }
+
+    pub fn scope(&self) -> ProgramScope {
+        self.0.file.program.scope
+    }
+
+    /// Label of the encoding to read files without a byte order mark with.
+    pub fn encoding(&self) -> Option<&str> {
+        let file = self.0.file.files.encoding.as_ref().map(|it| it.get_ref().as_str());
+        self.0.overrides.encoding.as_deref().or(file)
+    }
+
+    /// The table `[rules.options.<rule>]`, by the name of the rule.
+    pub fn options(&self, rule: &str) -> Option<&toml::Table> {
+        self.0.file.rules.options.get(rule)
+    }
+
+    /// The address that `[[entity]]` gives to a file; the first entry that matches counts.
+    pub fn entity_address(&self, path: &str) -> Option<&str> {
+        let path = self.relative(path)?;
+        let (_, index) = self.0.entities.iter().find(|it| matches(&it.0, &path))?;
+        self.0.file.entity.get(*index).map(|it| it.address.as_str())
+    }
+
+    /// Whether a file found in a folder takes part: it matches `include`, when there is one, and not `exclude`. A
+    /// file outside the configuration's folder always does.
+    pub fn includes(&self, path: &str) -> bool {
+        let Some(path) = self.relative(path) else { return true };
+        self.0.include.as_ref().is_none_or(|it| matches(it, &path))
+            && !self.0.exclude.as_ref().is_some_and(|it| matches(it, &path))
+    }
+
+    /// Whether a folder is excluded as a whole, so that there is no need to look into it.
+    pub fn excludes_folder(&self, path: &str) -> bool {
+        let (Some(exclude), Some(path)) = (&self.0.exclude, self.relative(path)) else { return false };
+        !path.as_os_str().is_empty() && exclude.matched_path_or_any_parents(&path, true).is_ignore()
+    }
+
+    /// A path below the configuration's folder, from there.
+    fn relative(&self, path: &str) -> Option<PathBuf> {
+        let Folders { root, current } = &self.0.folders;
+        normal(&current.join(path)).strip_prefix(normal(root)).ok().map(Path::to_owned)
+    }
+}
+
+/// A path without `.` and `..`, found without looking at the file system.
+fn normal(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                out.pop();
+            }
+            other => out.push(other),
+        }
+    }
+    out
+}
+
+fn matches(glob: &Gitignore, path: &Path) -> bool {
+    !path.as_os_str().is_empty() && glob.matched_path_or_any_parents(path, false).is_ignore()
+}
+
+fn selection(
+    registry: &'static [Rule],
+    text: &Text<'_>,
+    rules: &Rules,
+    overrides: &Overrides,
+) -> Result<Selection, ConfigError> {
+    let option = |name: &'static str, words: &[String]| -> Result<Vec<Selector>, ConfigError> {
+        let parse = |word: &String| {
+            Selector::parse(registry, word)
+                .map_err(|it| ConfigError { origin: Origin::Option(name), message: it.to_string() })
+        };
+        words.iter().map(parse).collect()
+    };
+    let mut selection = Selection::none(registry);
+    match &rules.select {
+        Some(words) => selection.select(&text.selectors(registry, words)?),
+        None => selection.select(&[Selector::Default]),
+    }
+    selection.select(&text.selectors(registry, &rules.extend_select)?);
+    selection.ignore(&text.selectors(registry, &rules.ignore)?);
+    if let Some(words) = &overrides.select {
+        selection.clear();
+        selection.select(&option("--select", words)?);
+    }
+    selection.select(&option("--extend-select", &overrides.extend_select)?);
+    selection.ignore(&option("--ignore", &overrides.ignore)?);
+
+    let mut severities = Vec::new();
+    for (word, level) in &rules.severity {
+        let Some(severity) = Severity::parse(level.get_ref()) else {
+            let message = format!("`{}` is no severity: write `error`, `warning` or `note`", level.get_ref());
+            return Err(text.error(Some(level.span()), message));
+        };
+        severities.push((text.selector(registry, word)?, severity));
+    }
+    // In the file, what is said of a rule counts more than what is said of its group.
+    severities.sort_by_key(|it| match it.0 {
+        Selector::All => 0,
+        Selector::Default => 1,
+        Selector::Group(_) => 2,
+        Selector::Rule(_) => 3,
+    });
+    for (word, severity) in &overrides.severity {
+        let selector = option("--severity", std::slice::from_ref(word))?;
+        severities.extend(selector.into_iter().map(|it| (it, *severity)));
+    }
+    for (selector, severity) in severities {
+        selection.set_severity(selector, severity);
+    }
+    Ok(selection)
+}
+
+/// Code pages of DOS, which the web's list of encodings does not have.
+const CODE_PAGES: [&str; 4] = ["cp850", "ibm850", "cp437", "ibm437"];
+
+fn is_encoding(label: &str) -> bool {
+    encoding_rs::Encoding::for_label(label.as_bytes()).is_some()
+        || CODE_PAGES.iter().any(|it| it.eq_ignore_ascii_case(label.trim()))
+}
+
+fn unknown_encoding(label: &str) -> String {
+    const COMMON: [&str; 7] = ["utf-8", "windows-1252", "iso-8859-1", "windows-1251", "cp850", "cp437", "utf-16le"];
+    match nearest(label, COMMON) {
+        Some(nearest) => format!("`{label}` is no known encoding; did you mean `{nearest}`?"),
+        None => format!("`{label}` is no known encoding"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lint::testing::RULES;
+
+    fn folders() -> Folders {
+        Folders { root: "/plant".into(), current: "/plant/line1".into() }
+    }
+
+    fn parse(text: &str) -> Result<Settings, ConfigError> {
+        parse_with(text, Overrides::default())
+    }
+
+    fn parse_with(text: &str, overrides: Overrides) -> Result<Settings, ConfigError> {
+        Settings::parse_with(RULES, text, Path::new(FILE_NAME), folders(), overrides)
+    }
+
+    fn on(settings: &Settings, path: &str) -> Vec<&'static str> {
+        settings.selection(path).rules().map(|it| it.code).collect()
+    }
+
+    fn rule(code: &str) -> &'static Rule {
+        RULES.iter().find(|it| it.code == code).unwrap()
+    }
+
+    #[test]
+    fn every_table_is_read() {
+        let settings = parse(
+            r#"
+            [target]
+            controller = "TSX 37-22"
+            version = "V3"
+            [objects]
+            M = 256
+            [files]
+            include = ["src/**"]
+            exclude = ["old/"]
+            encoding = "windows-1252"
+            [[entity]]
+            path = "poste1.st"
+            address = "MAST SR3"
+            [[task]]
+            name = "FAST"
+            period = "20ms"
+            io = ["%I3.8:8"]
+            [[event]]
+            number = 1
+            trigger = "%I1.0"
+            [program]
+            scope = "folder"
+            [rules]
+            select = ["W"]
+            extend-select = ["unused-label"]
+            [rules.severity]
+            W001 = "error"
+            [rules.options.W001]
+            limit = 3
+            [[per-file]]
+            path = "legacy/**"
+            ignore = ["W"]
+            "#,
+        )
+        .unwrap();
+        assert_eq!((settings.controller(), settings.version()), (Some("TSX 37-22"), Some("V3")));
+        assert_eq!((settings.objects("M"), settings.objects("MW")), (Some(256), None));
+        assert_eq!(settings.encoding(), Some("windows-1252"));
+        assert_eq!(settings.entity_address("sub/poste1.st"), Some("MAST SR3"));
+        assert_eq!(settings.entity_address("poste2.st"), None);
+        assert_eq!(settings.tasks()[0].io, ["%I3.8:8"]);
+        assert_eq!(settings.events()[0].trigger.as_deref(), Some("%I1.0"));
+        assert_eq!(settings.scope(), ProgramScope::Folder);
+        assert_eq!(on(&settings, "a.st"), ["J005", "W001"]);
+        assert_eq!(on(&settings, "../legacy/deep/a.st"), ["J005"]);
+        assert_eq!(settings.enabled(rule("W001"), "a.st"), Some(Severity::Error));
+        assert_eq!(settings.enabled(rule("W001"), "/plant/legacy/a.st"), None);
+        assert_eq!(settings.options("single-write").unwrap()["limit"].as_integer(), Some(3));
+        assert_eq!(settings.active().len(), 2);
+    }
+
+    #[test]
+    fn globs_start_at_the_configuration() {
+        let settings = parse("[files]\ninclude = ['/line1/**']\nexclude = ['old/', '*.bak']").unwrap();
+        assert!(settings.includes("a.st"));
+        assert!(settings.includes("/plant/line1/a.st"));
+        assert!(!settings.includes("../line2/a.st"));
+        assert!(!settings.includes("old/a.st"));
+        assert!(!settings.includes("a.bak"));
+        assert!(settings.includes("/elsewhere/old/a.st"), "outside the configuration's folder");
+        assert!(settings.excludes_folder("old"));
+        assert!(!settings.excludes_folder("."));
+    }
+
+    #[test]
+    fn errors_say_where() {
+        let error = |text: &str| parse(text).unwrap_err().to_string();
+        assert_eq!(
+            error("[rules]\nignore = ['W001', 'singel-write']\n"),
+            "plclint.toml:2:20: no rule or group is called `singel-write`; did you mean `single-write`?"
+        );
+        assert!(
+            error("[rules.severity]\nÜ = 'error'").starts_with("plclint.toml:2:1: "),
+            "{}",
+            error("[rules.severity]\nÜ = 'error'")
+        );
+        assert!(error("[rules.severity]\nsingel-write = 'error'").starts_with("plclint.toml:2:1: no rule"));
+        assert_eq!(
+            error("[rules.severity]\nW001 = 'fatal'"),
+            "plclint.toml:2:8: `fatal` is no severity: write `error`, `warning` or `note`"
+        );
+        assert!(error("[rules.options.W]\nx = 1").contains("is not one rule"));
+        assert!(error("[rules]\nselekt = []").starts_with("plclint.toml:2:1: unknown field `selekt`"));
+        assert!(error("[[per-file]]\nignore = []").contains("missing field `path`"));
+        assert!(error("[files]\nencoding = 'windows-1225'").contains("did you mean `windows-1252`?"));
+        assert!(error("[files]\nexclude = ['a{']").starts_with("plclint.toml:2:12: "));
+        assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));
+        assert!(error("[program]\nscope = 'galaxy'").contains("unknown variant"));
+    }
+
+    #[test]
+    fn the_command_line_is_a_layer_above_the_file() {
+        let text = "[rules]\nselect = ['J']\nignore = ['J001']\n[target]\ncontroller = 'CPU 314'\nversion = 'V2'";
+        let words = |it: &[&str]| it.iter().map(|it| (*it).to_owned()).collect::<Vec<_>>();
+        let select = Overrides { select: Some(words(&["J001"])), ..Overrides::default() };
+        assert_eq!(on(&parse_with(text, select).unwrap(), "a"), ["J001"]);
+        let extend = Overrides { extend_select: words(&["all"]), ignore: words(&["W"]), ..Overrides::default() };
+        assert_eq!(on(&parse_with(text, extend).unwrap(), "a"), ["I004", "J001", "J005", "X003"]);
+        let target = Overrides { controller: Some("TSX 37-22".into()), ..Overrides::default() };
+        let settings = parse_with(text, target).unwrap();
+        assert_eq!((settings.controller(), settings.version()), (Some("TSX 37-22"), None));
+        let wrong = Overrides { ignore: words(&["W01"]), ..Overrides::default() };
+        assert_eq!(
+            parse_with(text, wrong).unwrap_err().to_string(),
+            "--ignore: no rule or group is called `W01`; did you mean `W001`?"
+        );
+    }
+
+    #[test]
+    fn a_rule_counts_more_than_its_group() {
+        let text = "[rules.severity]\nunbalanced-parentheses = 'note'\nall = 'error'\nX = 'warning'";
+        let settings = parse(text).unwrap();
+        assert_eq!(settings.enabled(rule("I004"), "a"), Some(Severity::Advice));
+        assert_eq!(settings.enabled(rule("X003"), "a"), Some(Severity::Warning));
+        assert_eq!(settings.enabled(rule("W001"), "a"), Some(Severity::Error));
+    }
+
+    #[test]
+    fn equal_words_are_equal_settings() {
+        let text = "[rules]\nignore = ['W']";
+        assert_eq!(parse(text).unwrap(), parse(text).unwrap());
+        assert_ne!(parse(text).unwrap(), parse("").unwrap());
+        assert_eq!(Settings::default(), Settings::default());
+    }
+}

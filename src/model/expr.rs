@@ -1,0 +1,328 @@
+//! Expressions, shared: equal expressions of a unit have equal ids.
+//!
+//! A read carries the *version* of what it reads. Two reads of one object with equal versions give the same value,
+//! because nothing wrote the object between them.
+
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+/// Index of an object in the unit's table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ObjectId(pub u32);
+
+/// Index of an expression in the unit's arena.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ExprId(pub u32);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Comparison {
+    Eq,
+    Ne,
+    Lt,
+    Le,
+    Gt,
+    Ge,
+}
+
+impl Comparison {
+    /// The comparison that holds exactly when this one does not.
+    pub fn negated(self) -> Self {
+        match self {
+            Self::Eq => Self::Ne,
+            Self::Ne => Self::Eq,
+            Self::Lt => Self::Ge,
+            Self::Ge => Self::Lt,
+            Self::Gt => Self::Le,
+            Self::Le => Self::Gt,
+        }
+    }
+
+    /// The comparison with its operands exchanged.
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Lt => Self::Gt,
+            Self::Gt => Self::Lt,
+            Self::Le => Self::Ge,
+            Self::Ge => Self::Le,
+            other => other,
+        }
+    }
+
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Eq => "=",
+            Self::Ne => "<>",
+            Self::Lt => "<",
+            Self::Le => "<=",
+            Self::Gt => ">",
+            Self::Ge => ">=",
+        }
+    }
+
+    pub fn holds(self, order: std::cmp::Ordering) -> bool {
+        match self {
+            Self::Eq => order.is_eq(),
+            Self::Ne => order.is_ne(),
+            Self::Lt => order.is_lt(),
+            Self::Le => order.is_le(),
+            Self::Gt => order.is_gt(),
+            Self::Ge => order.is_ge(),
+        }
+    }
+}
+
+/// Operators on numbers and patterns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Operator {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Rem,
+    And,
+    Or,
+    Xor,
+    Shift,
+    /// A conversion, a rotation, a function of one or two values: known to be pure, not to be folded.
+    Other,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Expr {
+    Bool(bool),
+    Int(i64),
+    /// Bits of an `f64`.
+    Float(u64),
+    Text(SmolStr),
+    /// The value of an object; as a condition, whether the bit is 1.
+    Read {
+        object: ObjectId,
+        version: u32,
+    },
+    /// Rising or falling edge of a bit.
+    Edge {
+        object: ObjectId,
+        version: u32,
+        rising: bool,
+    },
+    Not(ExprId),
+    And(ExprId, ExprId),
+    Or(ExprId, ExprId),
+    Xor(ExprId, ExprId),
+    Compare(Comparison, ExprId, ExprId),
+    Negate(ExprId),
+    Binary(Operator, ExprId, ExprId),
+    Call(SmolStr, Box<[ExprId]>),
+    /// A value about which nothing is known; equal only to itself.
+    Opaque(u32),
+}
+
+/// The expressions of one unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Exprs {
+    nodes: Vec<Expr>,
+    ids: FxHashMap<Expr, ExprId>,
+    opaque: u32,
+}
+
+impl Default for Exprs {
+    fn default() -> Self {
+        let mut exprs = Self { nodes: Vec::new(), ids: FxHashMap::default(), opaque: 0 };
+        exprs.intern(Expr::Bool(false));
+        exprs.intern(Expr::Bool(true));
+        exprs
+    }
+}
+
+impl Exprs {
+    pub const FALSE: ExprId = ExprId(0);
+    pub const TRUE: ExprId = ExprId(1);
+
+    pub fn get(&self, id: ExprId) -> &Expr {
+        &self.nodes[id.0 as usize]
+    }
+
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    fn intern(&mut self, expr: Expr) -> ExprId {
+        if let Some(&id) = self.ids.get(&expr) {
+            return id;
+        }
+        let id = ExprId(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
+        self.nodes.push(expr.clone());
+        self.ids.insert(expr, id);
+        id
+    }
+
+    pub fn bool(value: bool) -> ExprId {
+        if value { Self::TRUE } else { Self::FALSE }
+    }
+
+    /// A value that is equal to nothing but itself.
+    pub fn opaque(&mut self) -> ExprId {
+        self.opaque += 1;
+        self.intern(Expr::Opaque(self.opaque))
+    }
+
+    pub fn int(&mut self, value: i64) -> ExprId {
+        self.intern(Expr::Int(value))
+    }
+
+    pub fn float(&mut self, value: f64) -> ExprId {
+        self.intern(Expr::Float(value.to_bits()))
+    }
+
+    pub fn text(&mut self, value: &str) -> ExprId {
+        self.intern(Expr::Text(value.into()))
+    }
+
+    pub fn read(&mut self, object: ObjectId, version: u32) -> ExprId {
+        self.intern(Expr::Read { object, version })
+    }
+
+    pub fn edge(&mut self, object: ObjectId, version: u32, rising: bool) -> ExprId {
+        self.intern(Expr::Edge { object, version, rising })
+    }
+
+    /// The plain read of an object's value, where the unit has one.
+    pub fn find_read(&self, object: ObjectId, version: u32) -> Option<ExprId> {
+        self.ids.get(&Expr::Read { object, version }).copied()
+    }
+
+    pub fn not(&mut self, a: ExprId) -> ExprId {
+        match *self.get(a) {
+            Expr::Bool(value) => Self::bool(!value),
+            Expr::Not(inner) => inner,
+            Expr::Compare(op, x, y) => self.intern(Expr::Compare(op.negated(), x, y)),
+            _ => self.intern(Expr::Not(a)),
+        }
+    }
+
+    /// Whether one is the negation of the other, as far as their form tells.
+    pub fn are_complements(&self, a: ExprId, b: ExprId) -> bool {
+        match (self.get(a), self.get(b)) {
+            (Expr::Bool(x), Expr::Bool(y)) => x != y,
+            (Expr::Not(x), _) if *x == b => true,
+            (_, Expr::Not(y)) if *y == a => true,
+            (Expr::Compare(op, x, y), Expr::Compare(other, u, v)) => op.negated() == *other && x == u && y == v,
+            _ => false,
+        }
+    }
+
+    pub fn and(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == Self::FALSE || b == Self::FALSE || self.are_complements(a, b) {
+            return Self::FALSE;
+        }
+        if a == Self::TRUE || a == b {
+            return b;
+        }
+        if b == Self::TRUE {
+            return a;
+        }
+        self.intern(Expr::And(a, b))
+    }
+
+    pub fn or(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == Self::TRUE || b == Self::TRUE || self.are_complements(a, b) {
+            return Self::TRUE;
+        }
+        if a == Self::FALSE || a == b {
+            return b;
+        }
+        if b == Self::FALSE {
+            return a;
+        }
+        // (p AND c) OR (p AND NOT c) is p: what a jump over code leaves where its paths meet.
+        if let (&Expr::And(p, c), &Expr::And(q, d)) = (self.get(a), self.get(b))
+            && p == q
+            && self.are_complements(c, d)
+        {
+            return p;
+        }
+        self.intern(Expr::Or(a, b))
+    }
+
+    pub fn xor(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == b {
+            return Self::FALSE;
+        }
+        match (a, b) {
+            (Self::FALSE, other) | (other, Self::FALSE) => other,
+            (Self::TRUE, other) | (other, Self::TRUE) => self.not(other),
+            _ => self.intern(Expr::Xor(a, b)),
+        }
+    }
+
+    pub fn compare(&mut self, op: Comparison, a: ExprId, b: ExprId) -> ExprId {
+        self.intern(Expr::Compare(op, a, b))
+    }
+
+    pub fn negate(&mut self, a: ExprId) -> ExprId {
+        match *self.get(a) {
+            Expr::Int(value) => match value.checked_neg() {
+                Some(value) => self.int(value),
+                None => self.intern(Expr::Negate(a)),
+            },
+            Expr::Float(bits) => self.float(-f64::from_bits(bits)),
+            _ => self.intern(Expr::Negate(a)),
+        }
+    }
+
+    pub fn binary(&mut self, op: Operator, a: ExprId, b: ExprId) -> ExprId {
+        self.intern(Expr::Binary(op, a, b))
+    }
+
+    pub fn call(&mut self, function: &str, arguments: Vec<ExprId>) -> ExprId {
+        self.intern(Expr::Call(function.into(), arguments.into_boxed_slice()))
+    }
+
+    /// Whether `whole` is `part AND ...`, looking at most 64 conjunctions down its left side.
+    pub fn has_conjunct_prefix(&self, whole: ExprId, part: ExprId) -> bool {
+        let mut at = whole;
+        for _ in 0..64 {
+            if at == part || part == Self::TRUE {
+                return true;
+            }
+            match self.get(at) {
+                Expr::And(left, _) => at = *left,
+                _ => return false,
+            }
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_that_meet_again_cancel() {
+        let mut exprs = Exprs::default();
+        let (p, c) = (exprs.opaque(), exprs.opaque());
+        let not_c = exprs.not(c);
+        let taken = exprs.and(p, c);
+        let fallen = exprs.and(p, not_c);
+        assert_eq!(exprs.or(fallen, taken), p);
+        assert_eq!(exprs.and(c, not_c), Exprs::FALSE);
+        assert_eq!(exprs.or(c, not_c), Exprs::TRUE);
+        assert!(exprs.has_conjunct_prefix(taken, p));
+        assert!(!exprs.has_conjunct_prefix(p, taken));
+    }
+
+    #[test]
+    fn negated_comparison_is_the_opposite_comparison() {
+        let mut exprs = Exprs::default();
+        let (a, five) = (exprs.opaque(), exprs.int(5));
+        let below = exprs.compare(Comparison::Lt, a, five);
+        let not_below = exprs.not(below);
+        assert_eq!(exprs.get(not_below), &Expr::Compare(Comparison::Ge, a, five));
+        assert!(exprs.are_complements(below, not_below));
+    }
+}

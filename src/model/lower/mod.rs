@@ -1,0 +1,21 @@
+//! Trees to models: one file a language.
+
+mod awl;
+mod builder;
+
+use rowan::TextRange;
+
+use super::UnitModel;
+use super::entity::Entity;
+use super::unit::Pin;
+use crate::syntax::{Language, SyntaxNode};
+
+/// What the code of a unit does. Total: what is not understood leaves no statement.
+pub fn lower(root: &SyntaxNode, entity: Entity, language: Language) -> UnitModel {
+    match language {
+        Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
+        Language::Pl7Il | Language::Pl7St | Language::Exchange => {
+            builder::Builder::new(entity, language, TextRange::default()).finish()
+        }
+    }
+}

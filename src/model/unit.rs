@@ -1,0 +1,457 @@
+//! The model of one unit: what its code does, in the order in which the controller does it.
+//!
+//! Places are ranges relative to the unit. Facts that leave the unit name places by *anchor*, an index into
+//! [`UnitModel::anchors`], so that they stay equal when code only moves.
+
+use std::ops::Range;
+
+use rowan::TextRange;
+use smol_str::SmolStr;
+
+use super::entity::{BlockName, Entity};
+use super::expr::{ExprId, Exprs, ObjectId};
+use super::literal::{LiteralError, Value};
+use super::object::{AddressError, Object};
+use crate::syntax::Language;
+
+/// An input or output of a timer, counter, monostable, register or drum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Pin {
+    /// Starts a timer or monostable: `SE T1`, `IN %TM1`, `S %MN1`.
+    Start,
+    /// `R T1`, `R %C8`.
+    Reset,
+    /// Sets a counter to its preset: `S Z1`, `S %C8`.
+    Preset,
+    Up,
+    Down,
+    /// `FR T1`, or an enable input.
+    Enable,
+    /// A register's `I` (store) and `O` (retrieve).
+    Store,
+    Retrieve,
+    /// A drum's `U`.
+    Advance,
+    /// Block used as a whole: `BLK %C8`, a call.
+    Whole,
+}
+
+impl Pin {
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Reset => "reset",
+            Self::Preset => "preset",
+            Self::Up => "count-up",
+            Self::Down => "count-down",
+            Self::Enable => "enable",
+            Self::Store => "store",
+            Self::Retrieve => "retrieve",
+            Self::Advance => "advance",
+            Self::Whole => "whole",
+        }
+    }
+}
+
+/// What is done to an object at one place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Mode {
+    Read,
+    /// Rising edge test.
+    Rising,
+    /// Falling edge test.
+    Falling,
+    /// A bit takes a condition: coil, `ST`, `:=`, `=`.
+    Assign,
+    /// A bit takes a negated condition: inverse coil, `STN`.
+    AssignNot,
+    Set,
+    Reset,
+    /// A word, table or text takes a value.
+    Store,
+    /// The previous value that `FP`/`FN` keeps: read and written.
+    EdgeMemory,
+    /// A pin of a block takes a condition.
+    Drive(Pin),
+    /// Given to a call that may read and write it.
+    InOut,
+    /// Given to a call that writes it: an output actual, a function's result.
+    Output,
+}
+
+impl Mode {
+    pub fn is_edge(self) -> bool {
+        matches!(self, Self::Rising | Self::Falling)
+    }
+
+    /// Whether the object's value comes out.
+    pub fn reads(self) -> bool {
+        matches!(self, Self::Read | Self::Rising | Self::Falling | Self::EdgeMemory | Self::InOut)
+    }
+
+    /// Whether the object may get another value.
+    pub fn writes(self) -> bool {
+        matches!(
+            self,
+            Self::Assign
+                | Self::AssignNot
+                | Self::Set
+                | Self::Reset
+                | Self::Store
+                | Self::EdgeMemory
+                | Self::InOut
+                | Self::Output
+        )
+    }
+
+    /// Whether the object gets a new value whenever the place is reached: what makes the last writer win.
+    pub fn assigns(self) -> bool {
+        matches!(self, Self::Assign | Self::AssignNot | Self::Output)
+    }
+
+    /// The verb of a secondary label: "also assigned here".
+    pub fn verb(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Rising => "tested for a rising edge",
+            Self::Falling => "tested for a falling edge",
+            Self::Assign => "assigned",
+            Self::AssignNot => "assigned (negated)",
+            Self::Set => "set",
+            Self::Reset => "reset",
+            Self::Store => "written",
+            Self::EdgeMemory => "used as edge memory",
+            Self::Drive(_) => "driven",
+            Self::InOut => "passed to a call",
+            Self::Output => "written by a call",
+        }
+    }
+}
+
+/// One use of one object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Access {
+    pub object: ObjectId,
+    pub mode: Mode,
+    /// Index of the statement that the access is part of.
+    pub statement: u32,
+    pub anchor: u32,
+    /// For reads: version of the value read. For writes: version that the write makes.
+    pub version: u32,
+    /// For reads: whether the value may stem from before this unit's own assignments, so from another unit or scan.
+    pub exposed: bool,
+    /// For an actual parameter: the name of the formal one.
+    pub parameter: Option<SmolStr>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StatementKind {
+    /// `access` indexes [`UnitModel::accesses`]; `value` is what the bit takes, negation applied.
+    Assign {
+        access: u32,
+        value: ExprId,
+    },
+    Set {
+        access: u32,
+        when: ExprId,
+    },
+    Reset {
+        access: u32,
+        when: ExprId,
+    },
+    Store {
+        access: u32,
+        value: ExprId,
+    },
+    /// `value` is the preset or duration loaded with it.
+    Drive {
+        access: u32,
+        pin: Pin,
+        when: ExprId,
+        value: Option<ExprId>,
+    },
+    Call(u32),
+    Jump(u32),
+    /// Back to the caller, or end of the task.
+    Return {
+        when: ExprId,
+    },
+    Halt,
+    /// Leaves the innermost loop.
+    Exit,
+    /// Opens a data block.
+    Open,
+    /// Anything else that acts: a conversion in place, a master control relay.
+    Other,
+}
+
+/// One step of the program, in execution order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Statement {
+    pub kind: StatementKind,
+    pub range: TextRange,
+    /// Condition under which control reaches the statement, within one run of the unit.
+    pub path: ExprId,
+    /// Index of the network or sentence.
+    pub network: u32,
+    /// Innermost loop, an index into [`UnitModel::loops`].
+    pub in_loop: Option<u32>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label {
+    /// As jumps name it: upper case (STEP 7 labels) or the number (`%L20` is `20`).
+    pub name: SmolStr,
+    /// As written.
+    pub text: SmolStr,
+    pub range: TextRange,
+    /// Index of the first statement after it.
+    pub statement: u32,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Jump {
+    /// As [`Label::name`].
+    pub label: SmolStr,
+    pub text: SmolStr,
+    /// Range of the target.
+    pub range: TextRange,
+    pub statement: u32,
+    /// Condition at the instruction, without the path to it. TRUE when unconditional.
+    pub when: ExprId,
+    /// The first label of that name, an index into [`UnitModel::labels`].
+    pub target: Option<u32>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Callee {
+    /// SRi of the same application.
+    Subroutine(u32),
+    /// FC, FB, SFC, SFB or OB.
+    Block(BlockName),
+    /// `#name`: an instance that the block's own declarations hold.
+    LocalInstance(SmolStr),
+    /// A PL7 function or operator statement, in upper case.
+    Function(SmolStr),
+    /// A DFB instance, in lower case.
+    Instance(SmolStr),
+    /// Computed at run time.
+    Unknown,
+}
+
+/// A parameter of a call with what was given for it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Argument {
+    /// Name of the parameter, where the call gives one.
+    pub name: Option<SmolStr>,
+    pub object: Option<ObjectId>,
+    pub range: TextRange,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Call {
+    pub callee: Callee,
+    /// The callee as written.
+    pub text: SmolStr,
+    pub statement: u32,
+    /// Place of the callee.
+    pub anchor: u32,
+    /// Condition at the instruction, without the path to it. TRUE when unconditional.
+    pub when: ExprId,
+    /// Instance data block, as written.
+    pub instance: Option<BlockName>,
+    pub instance_range: Option<TextRange>,
+    pub arguments: Vec<Argument>,
+    /// Whether the instruction can pass parameters and an instance (`CALL`, not `UC`/`CC`).
+    pub full: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LoopKind {
+    While,
+    Repeat,
+    For,
+    /// A backward jump to a label.
+    Jump,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Loop {
+    pub kind: LoopKind,
+    /// The keyword, or the backward jump.
+    pub keyword: TextRange,
+    /// For WHILE: the condition to go on; for REPEAT: the condition to stop.
+    pub condition: Option<ExprId>,
+    pub condition_range: Option<TextRange>,
+    /// FOR index.
+    pub index: Option<ObjectId>,
+    pub index_range: Option<TextRange>,
+    /// Statements of the body.
+    pub body: Range<u32>,
+    /// Whether an EXIT, a jump or a return can leave it.
+    pub exits: bool,
+    pub parent: Option<u32>,
+}
+
+/// A constant of a type whose exact value a rule asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    pub value: Value,
+    pub range: TextRange,
+    pub text: SmolStr,
+}
+
+/// Values are compared by their spelling.
+impl Eq for Constant {}
+
+/// Something that the language forbids or that loses a result, found while following the code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum OddityKind {
+    /// An operand that is no address of the dialect.
+    Address(AddressError),
+    Literal(LiteralError),
+
+    // PL7 instruction list.
+    LabelInParentheses,
+    JumpInParentheses,
+    StoreInParentheses,
+    /// An opening without its closing.
+    UnclosedParenthesis,
+    /// A closing without its opening.
+    UnopenedParenthesis,
+    /// Nesting reaches this depth.
+    ParenthesisDepth(u32),
+    /// This many values on the MPS stack.
+    StackDepth(u32),
+    StackUnderflow,
+    /// This many values left at the end of the sentence.
+    StackLeft(u32),
+    /// Two paths meet with different stack depths.
+    StackMismatch,
+    StackInParentheses,
+    /// A sequence that starts with an instruction that needs a result.
+    SentenceStart,
+    /// A test chain whose result nothing uses.
+    TestWithoutAction,
+    /// Wrong use of BLK, OUT_BLK, END_BLK: the sentence says how.
+    BlockStructure(String),
+    /// Operand of a type that the instruction does not take: the sentence says which it takes.
+    OperandType(String),
+
+    // STEP 7 and STEP 5.
+    /// The RLO at block start, which is the caller's.
+    RloFromCaller,
+    /// The RLO after a block call, which the called block left.
+    RloAfterCall,
+    /// An RLO computed and discarded.
+    RloUnused,
+    /// An instruction that ignores the RLO of the test before it.
+    UnconditionalAfterTest,
+    /// A value loaded and lost.
+    DeadLoad,
+    /// A two-operand instruction with fewer than two loaded values: how many were.
+    MissingOperand(u32),
+    /// A data block access while none was opened.
+    DataBlockNotOpen,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Oddity {
+    pub kind: OddityKind,
+    pub range: TextRange,
+    /// The text in question: operand, mnemonic.
+    pub text: SmolStr,
+    /// Other places that take part, with their part.
+    pub related: Vec<(TextRange, &'static str)>,
+}
+
+/// Why code cannot be reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DeadCause {
+    Jump,
+    Return,
+    /// `BE`, `BEA`, `END`, `RET`: the block or program ends there.
+    End,
+    Halt,
+    /// The condition is never true.
+    FalseCondition,
+}
+
+/// A stretch of code that no path reaches.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unreachable {
+    /// From the first to the last instruction.
+    pub range: TextRange,
+    /// First instruction of it.
+    pub first: TextRange,
+    pub cause: DeadCause,
+    /// What cut it off.
+    pub cut_by: TextRange,
+}
+
+/// A name that a block declares.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Declaration {
+    /// In lower case.
+    pub name: SmolStr,
+    pub section: Section,
+    /// The type as written, blanks removed: `INT`, `ARRAY[0..7]OFBOOL`, `"Motor"`.
+    pub ty: SmolStr,
+    pub range: TextRange,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Section {
+    Input,
+    Output,
+    InOut,
+    Static,
+    Temp,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitModel {
+    pub entity: Entity,
+    pub language: Language,
+    pub objects: Vec<Object>,
+    pub exprs: Exprs,
+    pub statements: Vec<Statement>,
+    pub accesses: Vec<Access>,
+    pub labels: Vec<Label>,
+    pub jumps: Vec<Jump>,
+    pub calls: Vec<Call>,
+    pub loops: Vec<Loop>,
+    pub declarations: Vec<Declaration>,
+    /// Durations, as written.
+    pub constants: Vec<Constant>,
+    pub oddities: Vec<Oddity>,
+    pub unreachable: Vec<Unreachable>,
+    /// Ranges that facts name; the first is the unit's heading.
+    pub anchors: Vec<TextRange>,
+    /// For a data block: the block that it is an instance of.
+    pub instance_of: Option<BlockName>,
+    /// Instructions and statements read.
+    pub instructions: u32,
+    /// Some place computed at run time is read (or written): any object may be.
+    pub reads_indirectly: bool,
+    pub writes_indirectly: bool,
+}
+
+impl UnitModel {
+    pub fn object(&self, id: ObjectId) -> &Object {
+        &self.objects[id.0 as usize]
+    }
+
+    pub fn statement(&self, access: &Access) -> Option<&Statement> {
+        self.statements.get(access.statement as usize)
+    }
+
+    /// Place of an anchor; the heading when there is none.
+    pub fn place(&self, anchor: u32) -> TextRange {
+        self.anchors.get(anchor as usize).or(self.anchors.first()).copied().unwrap_or_default()
+    }
+
+    pub fn heading(&self) -> TextRange {
+        self.place(0)
+    }
+}

@@ -1,0 +1,748 @@
+//! What a file is, by its content first and its extension second: in the field `.LD .ST .GR7 .SEQ .STL .SDF .DB .TXT`
+//! all have several meanings.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use super::decode::{Encoding, SourceText, decode, looks_binary};
+use super::heading::{
+    HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
+};
+use crate::model::entity::BlockKind;
+
+use super::scan::{Comments, Lines};
+
+/// What the user says that files are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Dialect {
+    #[default]
+    Auto,
+    Step7,
+    /// PL7, instruction list or structured text by content.
+    Pl7,
+    Pl7Il,
+    Pl7St,
+}
+
+impl Dialect {
+    pub const ALL: [Self; 5] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St];
+
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Step7 => "step7",
+            Self::Pl7 => "pl7",
+            Self::Pl7Il => "pl7-il",
+            Self::Pl7St => "pl7-st",
+        }
+    }
+}
+
+impl fmt::Display for Dialect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// A name of a dialect that plclint does not know.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownDialect(pub String);
+
+impl fmt::Display for UnknownDialect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il or pl7-st", self.0)
+    }
+}
+
+impl std::error::Error for UnknownDialect {}
+
+impl FromStr for Dialect {
+    type Err = UnknownDialect;
+
+    fn from_str(name: &str) -> Result<Self, UnknownDialect> {
+        let wanted = name.trim();
+        let found = Self::ALL.into_iter().find(|dialect| dialect.as_str().eq_ignore_ascii_case(wanted));
+        found.ok_or_else(|| UnknownDialect(name.to_owned()))
+    }
+}
+
+/// The text languages of PL7.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Pl7Text {
+    Il,
+    St,
+}
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Detected {
+    /// A PL7 source exchange file: blocks in brackets.
+    Exchange,
+    /// PL7 text without blocks; where no heading says the language, it is this one.
+    Pasted(Pl7Text),
+    /// STEP 7 statement list: a source with block headers or a bare listing.
+    Step7,
+    /// Part of a controller program, in a form that plclint does not read. `what` names the form.
+    Unsupported { what: &'static str },
+    /// It should be a controller program by its name, or was asked for, and is not text. `why` completes "not read: ".
+    Unreadable { why: &'static str },
+    /// Something else.
+    NotPlc,
+}
+
+/// What is known of a file beside its content.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FileHint<'p> {
+    pub path: Option<&'p Path>,
+    /// Named by the user rather than found in a folder.
+    pub explicit: bool,
+    pub dialect: Dialect,
+}
+
+/// Names of the forms that are recognised and not read.
+pub mod unsupported {
+    pub const LADDER: &str = "PL7 ladder (LD)";
+    pub const GRAFCET: &str = "PL7 Grafcet (GR7)";
+    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL and ST";
+    pub const PL7_2: &str = "PL7-2 program";
+    pub const DFB: &str = "PL7 DFB type";
+    pub const VARIABLES: &str = "PL7 variables (SCY)";
+    pub const APPLICATION: &str = "PL7 application (FEF)";
+    pub const ENCRYPTED: &str = "encrypted PL7 DFB type (UFB)";
+    pub const PROJECT: &str = "PL7 project (STX)";
+    pub const CONTROL_EXPERT: &str = "Control Expert (Unity Pro) export";
+    pub const SCL: &str = "STEP 7 structured control language (SCL)";
+    pub const GRAPH: &str = "S7-GRAPH source";
+    pub const STEP5: &str = "STEP 5 program";
+    pub const SYMBOLS: &str = "STEP 7 symbol table";
+    pub const IEC: &str = "IEC 61131-3 text that is not PL7";
+    pub const SFC: &str = "IEC 61131-3 textual SFC";
+}
+
+/// The meaning of an extension.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Extension {
+    /// STEP 7 statement list and nothing else.
+    Awl,
+    /// STEP 7 statement list or a 3-D mesh.
+    Stl,
+    /// A block of TIA Portal, or a data base.
+    Tia,
+    Il,
+    St,
+    Ld,
+    Gr7,
+    Sfc,
+    /// A symbol table if the content agrees.
+    Table,
+    Txt,
+    /// One form that is not read. Whether it is text or binary data says more than its content.
+    Form(&'static str, Storage),
+    /// Considered only if the user names the file.
+    Other,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Storage {
+    Text,
+    Binary,
+    Either,
+}
+
+const EXTENSIONS: &[(&str, Extension)] = &[
+    ("awl", Extension::Awl),
+    ("stl", Extension::Stl),
+    ("db", Extension::Tia),
+    ("udt", Extension::Tia),
+    ("il", Extension::Il),
+    ("st", Extension::St),
+    ("ld", Extension::Ld),
+    ("gr7", Extension::Gr7),
+    ("sfc", Extension::Sfc),
+    ("txt", Extension::Txt),
+    ("sdf", Extension::Table),
+    ("asc", Extension::Table),
+    ("seq", Extension::Table),
+    ("dfb", Extension::Form(unsupported::DFB, Storage::Text)),
+    ("scy", Extension::Form(unsupported::VARIABLES, Storage::Text)),
+    ("fef", Extension::Form(unsupported::APPLICATION, Storage::Text)),
+    ("ufb", Extension::Form(unsupported::ENCRYPTED, Storage::Either)),
+    ("stx", Extension::Form(unsupported::PROJECT, Storage::Binary)),
+    ("scl", Extension::Form(unsupported::SCL, Storage::Text)),
+    ("s5d", Extension::Form(unsupported::STEP5, Storage::Binary)),
+    ("xef", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("zef", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Binary)),
+    ("xst", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("xil", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("xld", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("xsf", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("xbd", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("xdb", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("xdd", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+    ("xsy", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
+];
+
+fn extension(path: Option<&Path>) -> Extension {
+    let Some(extension) = path.and_then(Path::extension).and_then(|extension| extension.to_str()) else {
+        return Extension::Other;
+    };
+    EXTENSIONS
+        .iter()
+        .find(|(name, _)| name.eq_ignore_ascii_case(extension))
+        .map_or(Extension::Other, |&(_, meaning)| meaning)
+}
+
+/// Whether a file found in a folder may be part of a controller program, by its extension.
+pub fn has_plc_extension(path: &Path) -> bool {
+    extension(Some(path)) != Extension::Other
+}
+
+/// Decodes and recognises a file. Data that is not text is not decoded: its text is empty.
+pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (SourceText, Detected) {
+    if let Some(detected) = detect_binary(hint, bytes, encoding) {
+        return (decode(b"", encoding), detected);
+    }
+    let source = decode(bytes, encoding);
+    let detected = detect(hint, &source.text);
+    (source, detected)
+}
+
+/// What a file is whose bytes are not text in the given encoding; `None` if they are.
+pub fn detect_binary(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> Option<Detected> {
+    let extension = extension(hint.path);
+    let utf16 = matches!(encoding, Some(Encoding::Utf16Le | Encoding::Utf16Be));
+    if utf16 || !looks_binary(bytes) && !is_binary_mesh(bytes) {
+        return None;
+    }
+    Some(match extension {
+        Extension::Form(what, Storage::Binary | Storage::Either) => Detected::Unsupported { what },
+        _ if hint.dialect != Dialect::Auto => Detected::Unreadable { why: BINARY },
+        Extension::Stl => Detected::NotPlc,
+        Extension::Tia | Extension::Table | Extension::Txt | Extension::Sfc | Extension::Other if !hint.explicit => {
+            Detected::NotPlc
+        }
+        _ => Detected::Unreadable { why: BINARY },
+    })
+}
+
+const BINARY: &str = "binary data, not text";
+const MARKUP: &str = "markup or data notation, not a program";
+
+/// A 3-D mesh: a header of 80 bytes, the number of triangles, 50 bytes a triangle.
+fn is_binary_mesh(bytes: &[u8]) -> bool {
+    let Some(count) = bytes.get(80..84).and_then(|count| <[u8; 4]>::try_from(count).ok()) else { return false };
+    bytes.len() as u64 == 84 + 50 * u64::from(u32::from_le_bytes(count))
+}
+
+/// What a text is.
+pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
+    let tally = Tally::of(text);
+    match hint.dialect {
+        Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
+        Dialect::Step7 => Detected::Step7,
+        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St if tally.is_exchange() => Detected::Exchange,
+        Dialect::Pl7 => Detected::Pasted(tally.pl7_text(extension(hint.path))),
+        Dialect::Pl7Il => Detected::Pasted(Pl7Text::Il),
+        Dialect::Pl7St => Detected::Pasted(Pl7Text::St),
+    }
+}
+
+/// The language of PL7 text that no heading and no file name tells.
+pub(super) fn pl7_text(text: &str) -> Pl7Text {
+    Tally::of(text).pl7_text(Extension::Other)
+}
+
+/// The form of PL7 text that is neither IL nor ST, by its content.
+pub(super) fn pl7_unsupported(text: &str) -> Option<&'static str> {
+    Tally::of(text).pl7_unsupported()
+}
+
+fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) -> Detected {
+    // Forms that the content proves, whatever the file is called.
+    let of_pl7 = matches!(
+        extension,
+        Extension::Il
+            | Extension::St
+            | Extension::Ld
+            | Extension::Gr7
+            | Extension::Form(
+                unsupported::DFB | unsupported::VARIABLES | unsupported::APPLICATION | unsupported::ENCRYPTED,
+                _
+            )
+    );
+    if tally.is_exchange() || of_pl7 && tally.blocks > 0 {
+        return Detected::Exchange;
+    }
+    if let Some(detected) = tally.prove() {
+        return detected;
+    }
+
+    let weak = tally.code_lines() * 5 >= tally.lines && tally.code_lines() > 0;
+    match extension {
+        Extension::Form(_, Storage::Binary) => Detected::NotPlc,
+        Extension::Form(unsupported::CONTROL_EXPERT, _) if !tally.markup => Detected::NotPlc,
+        Extension::Form(what, _) => Detected::Unsupported { what },
+        Extension::Awl if tally.markup => Detected::Unreadable { why: MARKUP },
+        Extension::Awl => Detected::Step7,
+        Extension::Stl if tally.lines == 0 && !text.is_empty() => Detected::Step7,
+        Extension::Stl if weak && tally.step7 > 0 => Detected::Step7,
+        Extension::Il | Extension::St if tally.iec > 0 && tally.pl7 == 0 => {
+            Detected::Unsupported { what: unsupported::IEC }
+        }
+        Extension::Il | Extension::St if tally.lines == 0 || weak && tally.il + tally.st > 0 => {
+            Detected::Pasted(tally.pl7_text(extension))
+        }
+        Extension::Ld if tally.rung > 0 => Detected::Unsupported { what: unsupported::LADDER },
+        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Unsupported { what: unsupported::GRAFCET },
+        Extension::Sfc if tally.chart > 0 => Detected::Unsupported { what: unsupported::SFC },
+        Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
+        Extension::Other if explicit && weak && tally.prose == 0 => {
+            if tally.step7 > tally.il + tally.st {
+                Detected::Step7
+            } else {
+                Detected::Pasted(tally.pl7_text(extension))
+            }
+        }
+        _ => Detected::NotPlc,
+    }
+}
+
+/// How much of a text is looked at.
+const SAMPLE: usize = 128 * 1024;
+
+/// Counts of the lines of a text by what they look like. Comments and empty lines are not counted.
+#[derive(Debug, Clone, Default)]
+struct Tally {
+    lines: u32,
+    /// STEP 7 instructions with an operand of the right shape, or none where none is due.
+    step7: u32,
+    /// PL7 instructions in IL; the same in ST.
+    il: u32,
+    st: u32,
+    /// Lines with something that only PL7 has: `%MW10`, `%L5:`, `!` before a sentence.
+    pl7: u32,
+    /// Headings of pasted PL7 text, by language.
+    headings_il: u32,
+    headings_st: u32,
+    headings_other: u32,
+    /// Exchange file blocks, and those among them that no other kind of file has.
+    blocks: u32,
+    own_blocks: u32,
+    /// Headers and ends of STEP 7 blocks.
+    block_headers: u32,
+    block_ends: u32,
+    /// Declarations and other lines that are code in a STEP 7 block but mean nothing elsewhere.
+    declarations: u32,
+    /// Statements of structured languages: assignments in code blocks, IF, CASE.
+    scl: u32,
+    /// The lines after the last header belong to a code block, not to data.
+    in_code_block: bool,
+    /// Declaration sections and program units of IEC 61131-3.
+    iec: u32,
+    rung: u32,
+    chart: u32,
+    /// Words of S7-GRAPH.
+    graph: u32,
+    step5: u32,
+    /// Lines of a symbol table.
+    symbols: u32,
+    /// Natural language.
+    prose: u32,
+    /// The text starts like XML, HTML or JSON.
+    markup: bool,
+}
+
+impl Tally {
+    fn of(text: &str) -> Self {
+        let mut end = text.len().min(SAMPLE);
+        while !text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let text = text.get(..end).unwrap_or_default();
+        let start = text.trim_start();
+        let mut tally = Self { markup: start.starts_with(['<', '{']), ..Self::default() };
+        // A line comment is none in PL7, but no PL7 text has `//` outside of comments.
+        for line in Lines::new(text, Comments::Step7) {
+            let code = line.code.split("//").next().unwrap_or_default().trim();
+            if !code.is_empty() {
+                tally.add(code);
+            }
+        }
+        tally
+    }
+
+    fn add(&mut self, line: &str) {
+        self.lines += 1;
+        if is_symbol_row(line) {
+            self.symbols += 1;
+        }
+        if let Some((block, _)) = exchange_block(line) {
+            self.blocks += 1;
+            self.own_blocks += u32::from(matches!(block, "[SOURCE_UNIT]" | "[DATA_UNIT]"));
+        } else if let Some(heading) = pl7_heading(line) {
+            match heading.language {
+                HeadingLanguage::Il => self.headings_il += 1,
+                HeadingLanguage::St => self.headings_st += 1,
+                HeadingLanguage::Ladder | HeadingLanguage::Grafcet => self.headings_other += 1,
+            }
+        } else if let Some(block) = block_header(line) {
+            self.block_headers += 1;
+            self.in_code_block = !matches!(block.block_kind(), Some(BlockKind::Db | BlockKind::Udt));
+        } else if block_end(line).is_some() {
+            self.block_ends += 1;
+        } else {
+            self.add_code(line);
+        }
+    }
+
+    fn add_code(&mut self, line: &str) {
+        let is_pl7 = line.starts_with('!') || has_pl7_object(line);
+        let code = strip_pl7_label(line.strip_prefix('!').unwrap_or(line).trim_start());
+        let first = word(code).0.to_ascii_uppercase();
+        let first = first.as_str();
+        self.pl7 += u32::from(is_pl7);
+        match pl7_statement(code, first, is_pl7) {
+            Some(Pl7Text::Il) => self.il += 1,
+            Some(Pl7Text::St) => {
+                self.st += 1;
+                self.scl += u32::from(self.in_code_block);
+            }
+            None => {}
+        }
+        match first {
+            "RUNG" | "END_RUNG" | "OPEN_CONTACT" | "CLOSE_CONTACT" | "CLOSED_CONTACT" | "P_CONTACT" | "N_CONTACT"
+            | "H_LINK" | "V_LINK" | "EMPTY_LINE" | "EMPTY_CELL" | "SHORT_CIRCUIT" | "HASH_COIL" => self.rung += 1,
+            "NB_PAGES" | "END_PAGE" | "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "T_S_OR_LINK"
+            | "S_T_OR_LINK" => self.chart += 1,
+            "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
+            "VAR_GLOBAL" | "PROGRAM" | "END_PROGRAM" | "CONFIGURATION" | "VAR_EXTERNAL" => self.iec += 1,
+            "VAR" | "VAR_INPUT" | "VAR_OUTPUT" | "VAR_IN_OUT" | "END_VAR" => {
+                self.iec += 1;
+                self.declarations += 1;
+            }
+            "VAR_TEMP" | "STRUCT" | "END_STRUCT" | "BEGIN" | "NETWORK" | "TITLE" | "VERSION" | "AUTHOR" | "FAMILY"
+            | "KNOW_HOW_PROTECT" => self.declarations += 1,
+            "IF" | "ELSIF" | "ELSE" | "END_IF" | "CASE" | "END_CASE" | "FOR" | "END_FOR" | "WHILE" | "END_WHILE"
+            | "REPEAT" | "END_REPEAT" | "REGION" => self.scl += 1,
+            _ if is_step5(code) => self.step5 += 1,
+            _ if is_step7_instruction(code) => self.step7 += 1,
+            _ if is_declaration(code) => self.declarations += 1,
+            _ if !is_pl7 && is_prose(code) => self.prose += 1,
+            _ => {}
+        }
+    }
+
+    fn is_exchange(&self) -> bool {
+        self.own_blocks > 0 || self.blocks > 1
+    }
+
+    fn headings(&self) -> u32 {
+        self.headings_il + self.headings_st + self.headings_other
+    }
+
+    /// Lines that are code of a dialect that is read.
+    fn code_lines(&self) -> u32 {
+        self.step7 + self.il + self.st
+    }
+
+    /// What a text is that is convincing by itself. Neither prose with listings in it nor the source of another
+    /// language is.
+    fn prove(&self) -> Option<Detected> {
+        let Self { lines, prose, .. } = *self;
+        if lines == 0 || self.markup {
+            return None;
+        }
+        // A document may show a whole block or section between its paragraphs.
+        if prose * 5 > lines {
+            return None;
+        }
+        if self.block_headers > 0 && self.declarations + self.block_ends + self.step7 > 0 {
+            return Some(if self.graph > 0 && self.chart + self.graph > 1 {
+                Detected::Unsupported { what: unsupported::GRAPH }
+            } else if self.scl > 1 && self.step7 * 4 < self.scl {
+                Detected::Unsupported { what: unsupported::SCL }
+            } else {
+                Detected::Step7
+            });
+        }
+        if self.headings() > 0 && self.pl7 + self.il + self.st + self.rung + self.chart > 0 {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
+        if self.step5 > 2 && (self.step5 + self.step7) * 2 > lines && self.step5 * 4 > self.step7 {
+            return Some(Detected::Unsupported { what: unsupported::STEP5 });
+        }
+        let most = |count: u32| count * 5 >= lines * 3;
+        if self.rung > 1 && most(self.rung + self.il) {
+            return Some(Detected::Unsupported { what: unsupported::LADDER });
+        }
+        let step7 = self.step7 + if self.step7 > 0 { self.declarations } else { 0 };
+        if self.step7 > 2 && most(step7) && self.step7 > self.il + self.st {
+            return Some(Detected::Step7);
+        }
+        let structure = if self.st > 0 { self.scl } else { 0 };
+        if self.pl7 > 2 && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
+        None
+    }
+
+    fn pl7_text(&self, extension: Extension) -> Pl7Text {
+        let (il, st) = match (self.headings_il, self.headings_st) {
+            (0, 0) => (self.il, self.st),
+            headings => headings,
+        };
+        match il.cmp(&st) {
+            std::cmp::Ordering::Greater => Pl7Text::Il,
+            std::cmp::Ordering::Equal if extension == Extension::Il => Pl7Text::Il,
+            _ => Pl7Text::St,
+        }
+    }
+
+    fn pl7_unsupported(&self) -> Option<&'static str> {
+        if self.chart > 0 {
+            Some(unsupported::GRAFCET)
+        } else if self.rung > 0 {
+            Some(unsupported::LADDER)
+        } else {
+            None
+        }
+    }
+}
+
+/// Names of PL7 objects between `%` and the number.
+const PL7_OBJECTS: [&str; 34] = [
+    "I", "Q", "M", "K", "S", "X", "T", "C", "R", "L", "IW", "QW", "MW", "KW", "SW", "ID", "QD", "MD", "KD", "SD", "MB",
+    "KB", "MF", "KF", "IF", "QF", "TM", "MN", "DR", "SR", "NW", "XM", "CH", "BLK",
+];
+
+/// Whether a line names an object as PL7 does: `%MW10`, `%I1.0`, `%MW 99`, `%X(0)`. Lower case must be followed by the
+/// number at once, which no format string of another language is.
+fn has_pl7_object(line: &str) -> bool {
+    memchr::memchr_iter(b'%', line.as_bytes()).any(|at| {
+        let before = line.get(..at).and_then(|before| before.chars().next_back());
+        let rest = line.get(at + 1..).unwrap_or_default();
+        let end = rest.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(rest.len());
+        let (letters, number) = rest.split_at(end);
+        let upper = letters.bytes().all(|byte| byte.is_ascii_uppercase());
+        let number = if upper { number.trim_start() } else { number };
+        !before.is_some_and(|before| before.is_alphanumeric() || before == '%')
+            && PL7_OBJECTS.iter().any(|object| object.eq_ignore_ascii_case(letters))
+            && number.starts_with(|c: char| c.is_ascii_digit() || upper && c == '(')
+    })
+}
+
+/// What follows `%L10:`.
+fn strip_pl7_label(line: &str) -> &str {
+    let Some(label) = strip_prefix_ignore_case(line, "%L") else { return line };
+    let rest = label.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
+    rest.strip_prefix(':').unwrap_or(line).trim_start()
+}
+
+/// The language of one line of PL7; `None` if it has none of its own.
+fn pl7_statement(code: &str, first: &str, has_object: bool) -> Option<Pl7Text> {
+    let rest = code.get(first.len()..).unwrap_or_default().trim();
+    match first {
+        "LD" | "LDN" | "LDR" | "LDF" | "AND" | "ANDN" | "ANDR" | "ANDF" | "OR" | "ORN" | "ORR" | "ORF" | "XOR"
+        | "XORN" | "XORR" | "XORF" | "ST" | "STN" | "S" | "R" | "JMP" | "JMPC" | "JMPCN" | "IN" | "CU" | "CD"
+        | "BLK" => {
+            let symbol = first.len() > 1 && {
+                let (name, rest) = word(rest);
+                !name.is_empty() && rest.is_empty()
+            };
+            let operand = has_object && rest.starts_with(['%', '[', '(']);
+            (symbol || operand).then_some(if rest.ends_with("THEN") || rest.ends_with(';') {
+                Pl7Text::St
+            } else {
+                Pl7Text::Il
+            })
+        }
+        "MPS" | "MRD" | "MPP" | "RETC" | "RETCN" | "ENDC" | "ENDCN" | "END_BLK" | "OUT_BLK" if rest.is_empty() => {
+            Some(Pl7Text::Il)
+        }
+        "IF" | "ELSIF" | "ELSEIF" | "WHILE" | "FOR" | "UNTIL" | "SET" | "RESET" | "INC" | "DEC" if has_object => {
+            Some(Pl7Text::St)
+        }
+        _ if code.starts_with('[') && has_object => Some(Pl7Text::Il),
+        _ if code.contains(":=") && code.ends_with(';') => Some(Pl7Text::St),
+        _ => None,
+    }
+}
+
+/// Whether a line is a statement list instruction, with an optional label before it.
+fn is_step7_instruction(line: &str) -> bool {
+    let line = strip_step7_label(line);
+    let line = line.split(';').next().unwrap_or_default().trim();
+    let end = line.find(|c: char| c.is_ascii_alphanumeric()).unwrap_or(line.len());
+    let operator = line.get(..end).unwrap_or_default().trim_end();
+    if !operator.is_empty() {
+        let rest = line.get(operator.len()..).unwrap_or_default();
+        return match operator {
+            "=" => is_step7_operand(rest),
+            ")" => rest.is_empty() || rest.eq_ignore_ascii_case("MCR"),
+            "+" | "-" | "*" | "/" | "==" | "<>" | ">" | "<" | ">=" | "<=" => {
+                ["I", "D", "R"].iter().any(|kind| kind.eq_ignore_ascii_case(rest))
+                    || operator == "+" && is_step7_operand(rest)
+                    || operator == "+" && ["AR1", "AR2"].iter().any(|name| name.eq_ignore_ascii_case(rest))
+            }
+            // `= "symbol"`, `= #local`, `= « symbol »`.
+            _ => operator.strip_prefix('=').is_some_and(|_| is_step7_operand(line.get(1..).unwrap_or_default())),
+        };
+    }
+    let (mnemonic, rest) = word(line);
+    let operand = rest.trim();
+    match mnemonic.to_ascii_uppercase().as_str() {
+        "U" | "UN" | "A" | "AN" | "ON" | "X" | "XN" => operand == "(" || is_step7_operand(operand),
+        "O" => matches!(operand, "" | "(") || is_step7_operand(operand),
+        "S" | "R" | "FP" | "FN" | "L" | "T" | "SI" | "SV" | "SE" | "SS" | "SA" | "SP" | "SD" | "SF" | "FR" | "ZV"
+        | "ZR" | "CU" | "CD" | "LC" | "AUF" | "OPN" | "INC" | "DEC" | "NOP" | "BLD" => is_step7_operand(operand),
+        "SPA" | "SPB" | "SPBN" | "SPBB" | "SPBNB" | "SPBI" | "SPBIN" | "SPL" | "SPM" | "SPMZ" | "SPN" | "SPO"
+        | "SPP" | "SPPZ" | "SPS" | "SPU" | "SPZ" | "JU" | "JC" | "JCN" | "JCB" | "JNB" | "JBI" | "JNBI" | "JL"
+        | "JM" | "JMZ" | "JN" | "JO" | "JP" | "JPZ" | "JOS" | "JUO" | "JZ" | "LOOP" => {
+            let (label, rest) = word(operand);
+            !label.is_empty() && rest.is_empty()
+        }
+        "CALL" | "UC" | "CC" => {
+            let called = operand.split([',', '(']).next().unwrap_or_default();
+            is_step7_operand(called)
+        }
+        "UW" | "OW" | "XOW" | "UD" | "OD" | "XOD" | "AW" | "AD" | "SSI" | "SSD" | "SLW" | "SRW" | "SLD" | "SRD"
+        | "RLD" | "RRD" | "LAR1" | "LAR2" | "TAR1" | "TAR2" => operand.is_empty() || is_step7_operand(operand),
+        "BE" | "BEA" | "BEB" | "BEU" | "BEC" | "SET" | "CLR" | "NOT" | "SAVE" | "TAK" | "ENT" | "LEAVE" | "INVI"
+        | "INVD" | "NEGI" | "NEGD" | "NEGR" | "BTI" | "ITB" | "BTD" | "DTB" | "ITD" | "DTR" | "RND" | "TRUNC"
+        | "TAW" | "TAD" | "CAW" | "CAD" | "TAR" | "CAR" | "TDB" | "CDB" | "MCRA" | "MCRD" | "MOD" | "RLDA" | "RRDA" => {
+            operand.is_empty()
+        }
+        "MCR" => operand == "(",
+        _ => false,
+    }
+}
+
+/// What follows `M001:`. A label alone is left as it is.
+fn strip_step7_label(line: &str) -> &str {
+    let (label, rest) = word(line);
+    match rest.trim_start().strip_prefix(':') {
+        Some(code) if (1..=8).contains(&label.len()) && !code.starts_with('=') && !code.trim().is_empty() => {
+            code.trim_start()
+        }
+        _ => line,
+    }
+}
+
+/// Prefixes of the absolute operands of STEP 7 and STEP 5 before the number, in both mnemonic sets.
+const STEP7_AREAS: [&str; 48] = [
+    "E", "EB", "EW", "ED", "A", "AB", "AW", "AD", "I", "IB", "IW", "ID", "Q", "QB", "QW", "QD", "M", "MB", "MW", "MD",
+    "L", "LB", "LW", "LD", "T", "Z", "C", "DBX", "DBB", "DBW", "DBD", "DIX", "DIB", "DIW", "DID", "PEB", "PEW", "PED",
+    "PAB", "PAW", "PAD", "PIW", "PQW", "OB", "FB", "FC", "DB", "DI",
+];
+
+/// Whether a text is an operand of STEP 7 and nothing else: `E 0.0`, `DB1.DBW 2`, `#tem`, `"X0"`, `« X0 »`, `S5T#1S`,
+/// `W [AR1,P#0.0]`, `-5`.
+fn is_step7_operand(text: &str) -> bool {
+    let text = text.trim();
+    let quoted = |open: char, close: char| {
+        text.strip_prefix(open).and_then(|rest| rest.split_once(close)).is_some_and(|(name, rest)| {
+            !name.is_empty() && (rest.is_empty() || rest.starts_with('.') && !rest.contains(' '))
+        })
+    };
+    if quoted('"', '"') || quoted('«', '»') || quoted('\'', '\'') {
+        return true;
+    }
+    if let Some(local) = text.strip_prefix('#') {
+        return !local.is_empty() && !local.contains(char::is_whitespace);
+    }
+    let is_constant = |text: &str| {
+        text.chars()
+            .all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '#' | '_' | ':' | '+' | '-' | ',' | '(' | ')'))
+    };
+    if text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-')) {
+        return is_constant(text);
+    }
+    let (prefix, rest) = word(text);
+    if rest.starts_with('#') && rest.len() > 1 {
+        return prefix.len() <= 4 && !rest.contains(char::is_whitespace);
+    }
+    if ["SFC", "SFB", "UDT", "STW", "AR1", "AR2", "DBNO", "DBLG", "DINO", "DILG", "OV", "OS", "BIE", "BR", "UO"]
+        .iter()
+        .any(|name| name.eq_ignore_ascii_case(prefix))
+        && rest.trim_start().bytes().all(|byte| byte.is_ascii_digit())
+    {
+        return true;
+    }
+    let end = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (area, rest) = text.split_at(end);
+    if !STEP7_AREAS.iter().any(|name| name.eq_ignore_ascii_case(area)) {
+        return false;
+    }
+    let rest = rest.trim_start();
+    if let Some(indirect) = rest.strip_prefix('[') {
+        return indirect.ends_with(']');
+    }
+    // `0.0`, `1.DBX 0.0`: at most one blank inside.
+    rest.starts_with(|c: char| c.is_ascii_digit())
+        && rest.bytes().filter(|byte| *byte == b' ').count() <= 1
+        && rest.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b' '))
+        && (!rest.contains(' ') || rest.contains(".D") || rest.contains(".d"))
+}
+
+/// Whether a line can only be STEP 5: a colon before the instruction, the end of a segment, fixed-point operators and
+/// constants of its kinds.
+fn is_step5(line: &str) -> bool {
+    if line.starts_with("***") {
+        return true;
+    }
+    let (colon, code) = match line.strip_prefix(':') {
+        Some(code) if !code.starts_with('=') || code.starts_with("= ") => (true, code.trim_start()),
+        _ => (false, line),
+    };
+    let operator = ["!=F", "><F", "!=G", "><G", "!=D", "><D"].iter().any(|operator| code.starts_with(operator));
+    let constant = code.strip_prefix("L ").is_some_and(|operand| {
+        let (kind, _) = operand.trim_start().split_at_checked(2).unwrap_or_default();
+        ["KB", "KC", "KF", "KG", "KH", "KM", "KT", "KY", "KZ"].contains(&kind)
+    });
+    operator || constant || colon && is_step7_instruction(code)
+}
+
+/// Whether a line declares, initialises or passes a value: `tem : TIMER;`, `duree := S5T#1S`.
+fn is_declaration(line: &str) -> bool {
+    let name_end = line
+        .find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ',' | '[' | ']' | ' ' | '\t')))
+        .unwrap_or(line.len());
+    let (name, rest) = line.split_at(name_end);
+    if name.trim().is_empty() || name.trim().contains(' ') && !name.contains(',') {
+        return false;
+    }
+    match rest.strip_prefix(":=") {
+        Some(value) => !value.trim().is_empty(),
+        None => rest.strip_prefix(':').is_some_and(|declared| {
+            let declared = declared.trim_start();
+            let (name, _) = word(declared);
+            !name.is_empty()
+                && name.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_' || byte.is_ascii_digit())
+                || declared.starts_with('"')
+        }),
+    }
+}
+
+/// Whether a line is a row of a symbol table: quoted fields, fixed width after `126,`, or an address between tabs.
+fn is_symbol_row(line: &str) -> bool {
+    line.starts_with("126,")
+        || line.starts_with('"') && line.matches("\",\"").count() >= 2
+        || line.matches('\t').count() >= 2 && line.split('\t').skip(1).any(is_step7_operand)
+}
+
+/// Whether a line is natural language or markup of a document, rather than code.
+fn is_prose(line: &str) -> bool {
+    if line.starts_with("```") {
+        return true;
+    }
+    let (mut words, mut natural) = (0, 0);
+    for word in line.split_whitespace().take(24) {
+        let letters = word.trim_matches(|c: char| !c.is_alphanumeric());
+        words += 1;
+        natural += u32::from(
+            !letters.is_empty() && letters.chars().all(|c| c.is_alphabetic() || matches!(c, '\'' | '’' | '-')),
+        );
+    }
+    words >= 4 && natural * 4 >= words * 3 && !line.contains(":=")
+}

@@ -1,0 +1,320 @@
+//! Offsets of a text to lines and columns, and back.
+
+use memchr::memchr2_iter;
+use rowan::{TextRange, TextSize};
+
+use super::decode::{Encoding, SourceText};
+
+/// A place as an editor shows it. Both count from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LineCol {
+    pub line: u32,
+    /// In characters (Unicode scalar values), or in UTF-16 code units where the method says so.
+    pub column: u32,
+}
+
+/// Where the lines of a text start, and which of its bytes do not start a character.
+///
+/// Lines end with LF, CRLF or CR. Every lookup takes time logarithmic in the size of the text at most. Memory: four
+/// bytes a line; a text that is not pure ASCII, one bit a byte more, one that leaves the Basic Multilingual Plane, two.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LineIndex {
+    /// Starts with 0 and rises.
+    line_starts: Box<[u32]>,
+    len: u32,
+    /// Bytes that continue a character.
+    continuation: Option<BitSet>,
+    /// First bytes of characters that UTF-16 stores as two units.
+    astral: Option<BitSet>,
+}
+
+impl LineIndex {
+    /// Reads the text once. Offsets are 32 bits wide, so of a text beyond 4 GiB only the start is indexed.
+    pub fn new(text: &str) -> Self {
+        let bytes = text.as_bytes();
+        let bytes = bytes.get(..u32::MAX as usize).unwrap_or(bytes);
+        let mut line_starts = vec![0];
+        for at in memchr2_iter(b'\n', b'\r', bytes) {
+            if bytes[at] == b'\n' || bytes.get(at + 1) != Some(&b'\n') {
+                line_starts.push((at + 1) as u32);
+            }
+        }
+        let (mut continuation, mut astral) = (None, None);
+        if !bytes.is_ascii() {
+            continuation = BitSet::new(bytes, |byte| byte & 0xc0 == 0x80);
+            astral = BitSet::new(bytes, |byte| byte >= 0xf0);
+        }
+        Self { line_starts: line_starts.into(), len: bytes.len() as u32, continuation, astral }
+    }
+
+    /// Number of lines. A text that ends with a line break ends with an empty line; there is always one.
+    pub fn line_count(&self) -> u32 {
+        self.line_starts.len() as u32
+    }
+
+    /// Line and column, in characters, of the character that holds the byte at `offset`. Offsets beyond the text are
+    /// its end.
+    pub fn line_col(&self, offset: TextSize) -> LineCol {
+        let (line, start, offset) = self.locate(offset);
+        LineCol { line: line + 1, column: self.characters(start, offset) + 1 }
+    }
+
+    /// As [`Self::line_col`], with the column in UTF-16 code units.
+    pub fn line_col_utf16(&self, offset: TextSize) -> LineCol {
+        let (line, start, offset) = self.locate(offset);
+        LineCol { line: line + 1, column: self.utf16_units(start, offset) + 1 }
+    }
+
+    /// The offset of a place; `None` for a line or column that the text does not have. The column after the last
+    /// character of a line, before its line break, is one that it has.
+    pub fn offset(&self, place: LineCol) -> Option<TextSize> {
+        self.find(place, Self::characters)
+    }
+
+    /// As [`Self::offset`], with the column in UTF-16 code units. Between the units of one character is its start.
+    pub fn offset_utf16(&self, place: LineCol) -> Option<TextSize> {
+        self.find(place, Self::utf16_units)
+    }
+
+    /// The line that `number`, counted from 1, says, with its line break.
+    pub fn line_range(&self, number: u32) -> Option<TextRange> {
+        let index = number.checked_sub(1)? as usize;
+        let start = *self.line_starts.get(index)?;
+        let end = self.line_starts.get(index + 1).copied().unwrap_or(self.len);
+        Some(TextRange::new(start.into(), end.into()))
+    }
+
+    /// The line that `number`, counted from 1, says, without its line break. `text` is the one that was indexed.
+    pub fn line_text<'t>(&self, text: &'t str, number: u32) -> Option<&'t str> {
+        let line = text.get(std::ops::Range::<usize>::from(self.line_range(number)?))?;
+        Some(line.strip_suffix("\r\n").or_else(|| line.strip_suffix(['\n', '\r'])).unwrap_or(line))
+    }
+
+    /// The byte of the original file at which the character at `offset` starts. `None` if the file cannot tell, as
+    /// bytes that mean nothing in a multi-byte encoding were replaced.
+    pub fn original_offset(&self, offset: TextSize, source: &SourceText) -> Option<u64> {
+        let offset = self.floor(offset);
+        let mark = if source.bom { source.encoding.byte_order_mark().len() as u64 } else { 0 };
+        let after_mark = match source.encoding {
+            encoding if encoding.is_single_byte() => u64::from(self.characters(0, offset)),
+            _ if source.malformed => return None,
+            Encoding::Utf16Le | Encoding::Utf16Be => 2 * u64::from(self.utf16_units(0, offset)),
+            _ => u64::from(offset),
+        };
+        Some(mark + after_mark)
+    }
+
+    /// Line counted from 0, its start, and the start of the character at `offset`.
+    fn locate(&self, offset: TextSize) -> (u32, u32, u32) {
+        let offset = self.floor(offset);
+        let line = self.line_starts.partition_point(|&start| start <= offset).saturating_sub(1);
+        (line as u32, self.line_starts.get(line).copied().unwrap_or(0), offset)
+    }
+
+    /// The start of the character that holds the byte at `offset`.
+    fn floor(&self, offset: TextSize) -> u32 {
+        let mut offset = u32::from(offset).min(self.len);
+        if let Some(continuation) = &self.continuation {
+            while continuation.contains(offset) {
+                offset -= 1;
+            }
+        }
+        offset
+    }
+
+    fn characters(&self, start: u32, end: u32) -> u32 {
+        end - start - self.continuation.as_ref().map_or(0, |set| set.rank(end) - set.rank(start))
+    }
+
+    fn utf16_units(&self, start: u32, end: u32) -> u32 {
+        self.characters(start, end) + self.astral.as_ref().map_or(0, |set| set.rank(end) - set.rank(start))
+    }
+
+    fn find(&self, place: LineCol, width: impl Fn(&Self, u32, u32) -> u32) -> Option<TextSize> {
+        let wanted = place.column.checked_sub(1)?;
+        let range = self.line_range(place.line)?;
+        let (start, end) = (u32::from(range.start()), u32::from(range.end()));
+        // The last offset up to which the line is not wider than wanted.
+        let (mut low, mut high) = (start, end);
+        while low < high {
+            let middle = low + (high - low).div_ceil(2);
+            if width(self, start, self.floor(middle.into())) <= wanted { low = middle } else { high = middle - 1 }
+        }
+        let found = self.floor(low.into());
+        (width(self, start, self.floor(end.into())) >= wanted).then_some(found.into())
+    }
+}
+
+/// A set of byte offsets with counting queries.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct BitSet {
+    words: Box<[u64]>,
+    /// Number of members before each block of words.
+    ranks: Box<[u32]>,
+}
+
+/// Words that share one entry of `ranks`.
+const BLOCK: usize = 8;
+
+impl BitSet {
+    /// The offsets of the bytes that `member` accepts; `None` if there are none.
+    fn new(bytes: &[u8], member: impl Fn(u8) -> bool) -> Option<Self> {
+        let words: Box<[u64]> = bytes
+            .chunks(64)
+            .map(|chunk| {
+                if chunk.is_ascii() {
+                    return 0;
+                }
+                chunk.iter().enumerate().fold(0, |word, (bit, &byte)| word | u64::from(member(byte)) << bit)
+            })
+            .collect();
+        let mut members = 0;
+        let ranks = words
+            .chunks(BLOCK)
+            .map(|block| {
+                let before = members;
+                members += block.iter().map(|word| word.count_ones()).sum::<u32>();
+                before
+            })
+            .collect();
+        (members > 0).then_some(Self { words, ranks })
+    }
+
+    fn contains(&self, offset: u32) -> bool {
+        self.words.get(offset as usize / 64).is_some_and(|word| word >> (offset % 64) & 1 == 1)
+    }
+
+    /// Number of members below `offset`.
+    fn rank(&self, offset: u32) -> u32 {
+        let word = (offset as usize / 64).min(self.words.len());
+        let block = word / BLOCK;
+        // The block after the last one, if the text ends with a full one, holds no words.
+        let (block, before) = match self.ranks.get(block) {
+            Some(&before) => (block, before),
+            None => (self.ranks.len() - 1, self.ranks.last().copied().unwrap_or(0)),
+        };
+        let full = &self.words[block * BLOCK..word];
+        let partial = self.words.get(word).map_or(0, |bits| (bits & ((1 << (offset % 64)) - 1)).count_ones());
+        before + full.iter().map(|bits| bits.count_ones()).sum::<u32>() + partial
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::decode::decode;
+    use super::*;
+
+    fn place(line: u32, column: u32) -> LineCol {
+        LineCol { line, column }
+    }
+
+    #[test]
+    fn lines_end_with_any_break() {
+        let text = "a\nb\r\nc\rd\r\r\ne\n\r";
+        let index = LineIndex::new(text);
+        let lines: Vec<_> = (1..=index.line_count()).map(|line| index.line_text(text, line).unwrap()).collect();
+        assert_eq!(lines, ["a", "b", "c", "d", "", "e", "", ""]);
+        assert_eq!(index.line_col(4.into()), place(2, 3));
+        assert_eq!(index.line_col(5.into()), place(3, 1));
+        assert_eq!(index.line_range(2), Some(TextRange::new(2.into(), 5.into())));
+        assert_eq!((index.line_range(0), index.line_range(9)), (None, None));
+    }
+
+    #[test]
+    fn empty_text_has_one_line() {
+        let index = LineIndex::new("");
+        assert_eq!(index.line_count(), 1);
+        assert_eq!(index.line_col(0.into()), place(1, 1));
+        assert_eq!(index.line_col(7.into()), place(1, 1));
+        assert_eq!(index.offset(place(1, 1)), Some(0.into()));
+        assert_eq!(index.line_text("", 1), Some(""));
+    }
+
+    #[test]
+    fn columns_count_characters() {
+        let text = "U « été » // 😀!\n= A";
+        let index = LineIndex::new(text);
+        let at = TextSize::of(text.split('!').next().unwrap());
+        assert_eq!(index.line_col(at), place(1, 15));
+        assert_eq!(index.line_col_utf16(at), place(1, 16));
+        assert_eq!(index.offset(place(1, 15)), Some(at));
+        assert_eq!(index.offset_utf16(place(1, 16)), Some(at));
+        assert_eq!(index.offset_utf16(place(1, 15)), Some(at - TextSize::of('😀')), "between the halves of a pair");
+        assert_eq!(index.line_col(3.into()), place(1, 3), "inside «");
+        assert_eq!(index.offset(place(2, 4)), Some(TextSize::of(text)));
+        assert_eq!(index.offset(place(2, 5)), None);
+        assert_eq!(index.offset(place(3, 1)), None);
+    }
+
+    #[test]
+    fn original_offsets() {
+        #[track_caller]
+        fn check(bytes: &[u8], forced: Option<Encoding>, expected: Option<u64>) {
+            let source = decode(bytes, forced);
+            let at = TextSize::of(source.text.split('!').next().unwrap());
+            assert_eq!(LineIndex::new(&source.text).original_offset(at, &source), expected);
+        }
+        check(b"\xe9\xe9\x80!", None, Some(3));
+        check(b"\x82\xc4!", Some(Encoding::Ibm437), Some(2));
+        check("éé!".as_bytes(), None, Some(4));
+        check(b"\xef\xbb\xbf\xc3\xa9!", None, Some(5));
+        check(b"\xff\xfe\x3d\xd8\x00\xdeA\0!\0", None, Some(8));
+        check(b"\xef\xbb\xbf\xe9!", None, None);
+        check(b"\xe9\x81!", None, Some(2));
+    }
+
+    #[test]
+    fn one_long_line() {
+        let text = "é".repeat(1 << 20);
+        let index = LineIndex::new(&text);
+        for n in (0..1 << 20).step_by(1 << 10) {
+            assert_eq!(index.line_col((2 * n).into()), place(1, n + 1));
+            assert_eq!(index.offset(place(1, n + 1)), Some((2 * n).into()));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_counting(pieces in prop::collection::vec("[a-zé€😀\r\n]{0,90}|\\PC*", 0..8)) {
+            let text = pieces.concat();
+            let index = LineIndex::new(&text);
+            let (mut line, mut column, mut units) = (1, 1, 1);
+            let mut previous = ' ';
+            for (offset, character) in text.char_indices() {
+                if previous == '\n' || previous == '\r' && character != '\n' {
+                    (line, column, units) = (line + 1, 1, 1);
+                }
+                let offset = TextSize::new(offset as u32);
+                prop_assert_eq!(index.line_col(offset), place(line, column));
+                prop_assert_eq!(index.line_col_utf16(offset), place(line, units));
+                prop_assert_eq!(index.offset(place(line, column)), Some(offset));
+                prop_assert_eq!(index.offset_utf16(place(line, units)), Some(offset));
+                let last = offset + TextSize::of(character) - TextSize::new(1);
+                prop_assert_eq!(index.line_col(last), place(line, column));
+                column += 1;
+                units += character.len_utf16() as u32;
+                previous = character;
+            }
+            let ranges = (1..=index.line_count()).map(|line| index.line_range(line).unwrap());
+            let mut end = TextSize::new(0);
+            for range in ranges {
+                prop_assert_eq!(range.start(), end);
+                end = range.end();
+            }
+            prop_assert_eq!(end, TextSize::of(text.as_str()));
+        }
+
+        #[test]
+        fn any_place_is_answered(text: String, offset: u32, line: u32, column: u32) {
+            let index = LineIndex::new(&text);
+            let _ = (index.line_col(offset.into()), index.line_col_utf16(offset.into()));
+            for place in [place(line, column), place(line % 8, column % 32)] {
+                for found in [index.offset(place), index.offset_utf16(place)].into_iter().flatten() {
+                    prop_assert!(text.is_char_boundary(found.into()));
+                }
+            }
+        }
+    }
+}

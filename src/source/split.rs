@@ -1,0 +1,468 @@
+//! A file's text into units: blocks, listings, sections, subroutines, chart pieces, and the blocks of an exchange file.
+//!
+//! One cheap pass over the lines, run on every edit, so that an edit re-parses one unit. A unit starts after the last
+//! code of the one before: blank lines and comments belong to what they precede.
+//!
+//! **Invariant:** the units tile the text, in order, and there is at least one; their keys differ, and hang on the
+//! unit's own heading and on earlier units of the same name only.
+
+use rowan::{TextRange, TextSize};
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::{SmolStr, format_smolstr};
+
+use super::detect::{Detected, Pl7Text, pl7_text, pl7_unsupported, unsupported};
+use super::heading::{
+    HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_address, pl7_heading,
+    strip_prefix_ignore_case, word,
+};
+use super::scan::{Comments, Lines};
+use crate::model::entity::{Entity, Part, Task};
+use crate::syntax::{Language, Mnemonics};
+
+/// A piece of a file that is parsed and checked by itself.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct UnitSpan {
+    /// Unique in the file; the same before and after an edit elsewhere in it.
+    pub key: SmolStr,
+    pub entity: Entity,
+    /// Says nothing if the unit is unsupported.
+    pub language: Language,
+    /// Bytes of the file's text.
+    pub range: TextRange,
+    /// The name of the form that the unit is in, if it is one that is not read: the unit must be reported, not parsed.
+    pub unsupported: Option<&'static str>,
+}
+
+/// What the configuration says of a file that does not say it itself.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct SplitHint {
+    /// What code without a heading is.
+    pub entity: Option<Entity>,
+    /// The mnemonics of STEP 7 code; without, they are found by vote.
+    pub mnemonics: Option<Mnemonics>,
+}
+
+/// Cuts a text into units. Total and linear for every text; of a text beyond 4 GiB the ranges are cut short.
+pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> {
+    let mut units = Units { text, drafts: Vec::new(), code_end: 0 };
+    match detected {
+        Detected::Step7 => step7(&mut units, hint),
+        Detected::Pasted(default) => pasted(&mut units, default, hint),
+        Detected::Exchange => exchange(&mut units),
+        Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
+            units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
+        }
+        Detected::NotPlc => units.push(0, Draft { unsupported: Some("not a PLC program"), ..Draft::container() }),
+    }
+    units.finish()
+}
+
+/// A unit whose end is not known yet.
+#[derive(Debug, Clone)]
+struct Draft {
+    start: usize,
+    /// What the key is made of, where the entity does not tell units apart.
+    label: Option<SmolStr>,
+    entity: Entity,
+    /// `None` is PL7, in the language that the text looks like.
+    language: Option<Language>,
+    unsupported: Option<&'static str>,
+}
+
+impl Draft {
+    fn container() -> Self {
+        Self::new(Entity::Container, Some(Language::Exchange))
+    }
+
+    fn new(entity: Entity, language: Option<Language>) -> Self {
+        Self { start: 0, label: None, entity, language, unsupported: None }
+    }
+
+    fn name(&self) -> SmolStr {
+        self.label.clone().unwrap_or_else(|| format_smolstr!("{}", self.entity))
+    }
+}
+
+struct Units<'t> {
+    text: &'t str,
+    drafts: Vec<Draft>,
+    /// After the last line with code.
+    code_end: usize,
+}
+
+impl Units<'_> {
+    fn push(&mut self, start: usize, draft: Draft) {
+        self.drafts.push(Draft { start, ..draft });
+    }
+
+    fn finish(mut self) -> Vec<UnitSpan> {
+        if let Some(first) = self.drafts.first_mut() {
+            first.start = 0;
+        }
+        let offset = |at: usize| TextSize::new(u32::try_from(at).unwrap_or(u32::MAX));
+        let ends: Vec<_> = self.drafts.iter().skip(1).map(|draft| draft.start).chain([self.text.len()]).collect();
+        let mut keys = Keys::default();
+        let span = |(draft, end): (Draft, usize)| {
+            let (language, unsupported) = match draft.language {
+                Some(language) => (language, draft.unsupported),
+                None => {
+                    let text = self.text.get(draft.start..end).unwrap_or_default();
+                    let form = draft.unsupported.or_else(|| pl7_unsupported(text));
+                    (if form.is_some() { Language::Exchange } else { pl7_language(pl7_text(text)) }, form)
+                }
+            };
+            UnitSpan {
+                key: keys.unique(draft.name()),
+                entity: draft.entity,
+                language,
+                range: TextRange::new(offset(draft.start), offset(end)),
+                unsupported,
+            }
+        };
+        self.drafts.into_iter().zip(ends).map(span).collect()
+    }
+}
+
+/// Makes the second unit of a name `name#2`.
+#[derive(Default)]
+struct Keys {
+    used: FxHashSet<SmolStr>,
+    repeats: FxHashMap<SmolStr, u32>,
+}
+
+impl Keys {
+    fn unique(&mut self, name: SmolStr) -> SmolStr {
+        if self.used.insert(name.clone()) {
+            return name;
+        }
+        let repeat = self.repeats.entry(name.clone()).or_insert(1);
+        // A unit may be called `name#2` itself. Each miss uses up such a unit, so the time stays linear.
+        loop {
+            *repeat += 1;
+            let key = format_smolstr!("{name}#{repeat}");
+            if self.used.insert(key.clone()) {
+                return key;
+            }
+        }
+    }
+}
+
+fn pl7_language(text: Pl7Text) -> Language {
+    match text {
+        Pl7Text::Il => Language::Pl7Il,
+        Pl7Text::St => Language::Pl7St,
+    }
+}
+
+/// STEP 7: block headers, and names of bare listings where no block is open.
+fn step7(units: &mut Units<'_>, hint: &SplitHint) {
+    let text = units.text;
+    let language = Language::Awl(hint.mnemonics.unwrap_or_else(|| mnemonics(text)));
+    let draft = |entity| Draft::new(entity, Some(language));
+    /// What the next line of code belongs to.
+    #[derive(PartialEq)]
+    enum Open {
+        Nothing,
+        Listing,
+        Block,
+    }
+    let mut open = Open::Nothing;
+    let mut has_headers = false;
+    for line in Lines::new(text, Comments::Step7) {
+        let mut code = line.code;
+        if code.is_empty() {
+            continue;
+        }
+        let mut start = units.code_end;
+        if open == Open::Block
+            && let Some(rest) = block_end(code)
+        {
+            // The header of the next block may share the line.
+            open = Open::Nothing;
+            code = rest.trim_start_matches(|c: char| c.is_whitespace() || c == ';');
+            start = line.code_start + (line.code.len() - code.len());
+        }
+        if code.is_empty() || code.starts_with("//") {
+            // Nothing is left of the line.
+        } else if let Some(entity) = block_header(code) {
+            units.push(start, draft(entity));
+            open = Open::Block;
+            has_headers = true;
+        } else if open != Open::Block
+            && let Some(entity) = listing_name(code)
+        {
+            units.push(start, draft(entity));
+            open = Open::Listing;
+        } else if open == Open::Nothing {
+            units.push(start, draft(Entity::Container));
+            open = Open::Listing;
+        }
+        units.code_end = line.end;
+    }
+    if units.drafts.is_empty() {
+        units.push(0, draft(Entity::Container));
+    }
+    if !has_headers {
+        // Without a header anywhere, code that nothing names is a program, not text around one.
+        let unnamed = hint.entity.clone().unwrap_or(Entity::Listing);
+        for draft in &mut units.drafts {
+            if draft.entity == Entity::Container {
+                draft.entity = unnamed.clone();
+            }
+        }
+    }
+}
+
+/// The mnemonic set of a file.
+fn mnemonics(text: &str) -> Mnemonics {
+    vote(text).unwrap_or(if memchr::memmem::find(text.as_bytes(), "«".as_bytes()).is_some() {
+        // Only French documents quote symbols so, and they use the German set.
+        Mnemonics::German
+    } else {
+        Mnemonics::English
+    })
+}
+
+/// TO BE REPLACED AT MERGE by `crate::syntax::awl::vote`, which has the whole table of unambiguous words.
+fn vote(text: &str) -> Option<Mnemonics> {
+    const ENOUGH: i32 = 64;
+    const GERMAN: [&str; 12] = ["U", "UN", "SPA", "SPB", "SPBN", "AUF", "BEA", "BEB", "SV", "SA", "ZV", "ZR"];
+    const ENGLISH: [&str; 10] = ["AN", "JU", "JC", "JCN", "OPN", "BEU", "BEC", "SD", "CU", "CD"];
+    let mut german: i32 = 0;
+    for line in Lines::new(text, Comments::Step7) {
+        let (first, rest) = word(line.code);
+        let (mnemonic, _) = rest.trim_start().strip_prefix(':').map_or((first, rest), |code| word(code.trim_start()));
+        german += i32::from(GERMAN.iter().any(|word| word.eq_ignore_ascii_case(mnemonic)));
+        german -= i32::from(ENGLISH.iter().any(|word| word.eq_ignore_ascii_case(mnemonic)));
+        if german.abs() >= ENOUGH {
+            break;
+        }
+    }
+    match german {
+        0 => None,
+        1.. => Some(Mnemonics::German),
+        _ => Some(Mnemonics::English),
+    }
+}
+
+/// PL7 as it is pasted in documents: headings, and code before the first one.
+fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
+    let unnamed = || {
+        let main = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        Draft::new(hint.entity.clone().unwrap_or(main), Some(pl7_language(default)))
+    };
+    for line in Lines::new(units.text, Comments::Pl7) {
+        if line.code.is_empty() {
+            continue;
+        }
+        if let Some(heading) = pl7_heading(line.code) {
+            let (language, unsupported) = match heading.language {
+                HeadingLanguage::Il | HeadingLanguage::St if heading.pl7_2 => {
+                    (Language::Exchange, Some(unsupported::PL7_2))
+                }
+                HeadingLanguage::Il => (Language::Pl7Il, None),
+                HeadingLanguage::St => (Language::Pl7St, None),
+                HeadingLanguage::Ladder => (Language::Exchange, Some(unsupported::LADDER)),
+                HeadingLanguage::Grafcet => (Language::Exchange, Some(unsupported::GRAFCET)),
+            };
+            units.push(units.code_end, Draft { unsupported, ..Draft::new(heading.entity, Some(language)) });
+        } else if units.drafts.is_empty() {
+            units.push(0, unnamed());
+        }
+        units.code_end = line.end;
+    }
+    if units.drafts.is_empty() {
+        units.push(0, unnamed());
+    }
+}
+
+/// A PL7 exchange file: each block in brackets, and the program in each source unit.
+fn exchange(units: &mut Units<'_>) {
+    #[derive(PartialEq)]
+    enum State {
+        /// Between blocks, or in one without a program.
+        Other,
+        /// In the keys of a source unit, whose draft is the last one.
+        Keys,
+        Program,
+        Ended,
+    }
+    let mut state = State::Ended;
+    let mut keys = SourceUnit::default();
+    for line in Lines::new(units.text, Comments::Pl7) {
+        if line.code.is_empty() {
+            continue;
+        }
+        let mut code = line.code;
+        if let Some((block, rest)) = exchange_block(code) {
+            let unsupported = (block == "[DATA_UNIT]").then_some(unsupported::VARIABLES);
+            units.push(units.code_end, Draft { label: Some(block.into()), unsupported, ..Draft::container() });
+            keys = SourceUnit::default();
+            state = if block == "[SOURCE_UNIT]" { State::Keys } else { State::Other };
+            code = rest;
+        } else if state == State::Ended {
+            units.push(units.code_end, Draft::container());
+            state = State::Other;
+        }
+        match state {
+            State::Keys => {
+                if let Some(program) = keys.read(code) {
+                    let draft = keys.program(program);
+                    if let Some(header) = units.drafts.last_mut() {
+                        header.label = Some(format_smolstr!("[SOURCE_UNIT] {}", draft.name()));
+                    }
+                    let at = line.code_start + (line.code.len() - program.len());
+                    let start = if at == line.code_start { units.code_end } else { at };
+                    units.push(start, draft);
+                    state = State::Program;
+                }
+            }
+            State::Program if ends_program(code) => state = State::Ended,
+            _ => {}
+        }
+        units.code_end = line.end;
+    }
+    if units.drafts.is_empty() {
+        units.push(0, Draft::container());
+    }
+}
+
+fn ends_program(code: &str) -> bool {
+    ["END_PROGRAM", "END_FUNCTION_BLOCK"].iter().any(|end| strip_prefix_ignore_case(code, end).is_some())
+}
+
+/// The keys of a source unit that say what its program is.
+#[derive(Debug, Default)]
+struct SourceUnit<'t> {
+    name: Option<&'t str>,
+    language: Option<&'t str>,
+    address: Option<&'t str>,
+    program_language: Option<&'t str>,
+}
+
+/// Keys of a source unit. Longer before shorter, as blanks before a key may be missing.
+const KEYS: [&str; 12] = [
+    "PROG_LANGUAGE",
+    "PROG_LANGAGE",
+    "LANGUAGE",
+    "STANDARD",
+    "SU_TYPE",
+    "ADDRESS",
+    "VERSION",
+    "COMMENT",
+    "SENDER",
+    "BODY",
+    "NAME",
+    "DATE",
+];
+
+impl<'t> SourceUnit<'t> {
+    /// Reads one line of keys. The rest of the line if it starts the program.
+    ///
+    /// A value ends with its quote, before the next key, or with the line, for closing quotes may be missing.
+    fn read(&mut self, line: &'t str) -> Option<&'t str> {
+        let mut rest = line.trim_start();
+        loop {
+            if starts_program(rest) {
+                return Some(rest);
+            }
+            let key = next_key(rest)?;
+            let value = rest.get(key.end..).unwrap_or_default();
+            // The value of the body, if it has one, is the program.
+            let end = if key.name == "BODY" { 0 } else { next_key(value).map_or(value.len(), |next| next.start) };
+            let (text, after) = value.split_at_checked(end).unwrap_or((value, ""));
+            let text = text.trim();
+            let text = match text.strip_prefix(['\'', '"']) {
+                Some(quoted) => quoted.split(['\'', '"']).next().unwrap_or_default(),
+                None => text,
+            };
+            let text = (!text.is_empty()).then(|| text.trim_end_matches([';', ' ', '\t']));
+            match key.name {
+                "NAME" => self.name = text,
+                "LANGUAGE" => self.language = text,
+                "ADDRESS" => self.address = text,
+                "PROG_LANGAGE" | "PROG_LANGUAGE" => self.program_language = text,
+                _ => {}
+            }
+            rest = after.trim_start();
+        }
+    }
+
+    /// The unit of the program that starts with `line`: `PROGRAM`, perhaps with its address after it.
+    fn program(&self, line: &str) -> Draft {
+        if let Some(rest) = strip_prefix_ignore_case(line, "FUNCTION_BLOCK") {
+            let name = Some(word(rest.trim_start()).0).filter(|name| !name.is_empty()).or(self.name);
+            let label = Some(format_smolstr!("FUNCTION_BLOCK {}", name.unwrap_or_default()));
+            return Draft { label, unsupported: Some(unsupported::DFB), ..Draft::container() };
+        }
+        let repeated = strip_prefix_ignore_case(line, "PROGRAM").unwrap_or_default();
+        let address = self.address.into_iter().chain([repeated]).find_map(pl7_address);
+        let mut entity = address.unwrap_or(Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main });
+        self.name_section(&mut entity);
+        let language = self.language.unwrap_or_default().to_ascii_uppercase();
+        let program_language = self.program_language.unwrap_or_default().to_ascii_uppercase();
+        let (language, unsupported) = match (language.as_str(), program_language.as_str()) {
+            ("IL", _) => (Some(Language::Pl7Il), None),
+            ("ST", _) => (Some(Language::Pl7St), None),
+            ("LD", _) => (Some(Language::Exchange), Some(unsupported::LADDER)),
+            (_, "GR7") | ("GR7", _) => (Some(Language::Exchange), Some(unsupported::GRAFCET)),
+            ("", _) => (None, None),
+            _ => (Some(Language::Exchange), Some(unsupported::OTHER_LANGUAGE)),
+        };
+        Draft { unsupported, ..Draft::new(entity, language) }
+    }
+
+    /// Names the section after the unit, unless the unit's name only repeats its address: `MAST_SR1`, `MAST_Chart`.
+    fn name_section(&self, entity: &mut Entity) {
+        let Entity::Pl7 { task, section: section @ None, part } = entity else { return };
+        let module = match part {
+            Part::Main => "MAIN",
+            Part::Preliminary => "PRL",
+            Part::Posterior => "POST",
+            Part::Chart(chart) => chart.split(' ').next().unwrap_or_default(),
+            Part::Subroutine(_) | Part::Event => return,
+        };
+        let Some(name) = self.name else { return };
+        let task = task.to_string();
+        let name = strip_prefix_ignore_case(name, &task).map_or(name, |name| name.trim_start_matches(['_', ' ', '-']));
+        let base = name.len().checked_sub(module.len()).and_then(|at| name.split_at_checked(at));
+        let name = match base {
+            Some((base, end)) if end.eq_ignore_ascii_case(module) => base.trim_end_matches(['_', ' ', '-']),
+            _ => name,
+        };
+        if !name.is_empty() {
+            *section = Some(name.into());
+        }
+    }
+}
+
+/// Whether a line starts a program rather than a key: blanks after the word may be missing (`PROGRAMMAST'Chart'`).
+fn starts_program(line: &str) -> bool {
+    ["PROGRAM", "FUNCTION_BLOCK"].iter().any(|start| {
+        strip_prefix_ignore_case(line, start).is_some_and(|rest| !word(rest).1.trim_start().starts_with('='))
+    })
+}
+
+/// A key and its equals sign on a line.
+struct Key {
+    name: &'static str,
+    start: usize,
+    end: usize,
+}
+
+/// The first key of a line.
+fn next_key(line: &str) -> Option<Key> {
+    memchr::memchr_iter(b'=', line.as_bytes()).find_map(|equals| {
+        let before = line.get(..equals)?.trim_end();
+        KEYS.into_iter().find_map(|name| {
+            let start = before.len().checked_sub(name.len())?;
+            let (prefix, found) = before.split_at_checked(start)?;
+            let word = prefix.rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_').map_or(0, |at| at + 1);
+            // `PROGNAME = 'x'` is the value of the key before, and the next one.
+            let glued = prefix.get(word..).unwrap_or_default();
+            let is_value =
+                ["", "PROG", "LD", "IL", "ST", "GR7", "OTHERS"].iter().any(|v| v.eq_ignore_ascii_case(glued));
+            (found.eq_ignore_ascii_case(name) && is_value).then_some(Key { name, start, end: equals + 1 })
+        })
+    })
+}

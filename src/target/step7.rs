@@ -1,0 +1,52 @@
+//! SIMATIC S7-300 and S7-400.
+
+use super::{Limit, Range};
+
+/// Longest jump label, in characters.
+pub const LABEL_LENGTH: Limit = Limit::new(4, "S7:315");
+
+/// Nesting expressions `U( O( X(` open at once. Not in the source manual.
+pub const PARENTHESIS_DEPTH: Limit = Limit::new(7, "the vendor's general documentation");
+
+/// A counter counts from 0 to this.
+pub const COUNTER_MAX: Limit = Limit::new(999, "S7:591");
+
+/// Longest time of a timer, in seconds: 2H_46M_30S.
+pub const TIMER_MAX_SECONDS: Limit = Limit::new(9990, "S7:485");
+
+/// Number of timers and counters that a CPU usually has; it varies with the CPU.
+pub const USUAL_TIMERS: Limit = Limit::new(256, "S7:477");
+pub const USUAL_COUNTERS: Limit = Limit::new(256, "S7:591");
+
+/// What one CPU has. `None` where no source tells.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Cpu {
+    pub name: &'static str,
+    /// Nesting of block calls.
+    pub call_depth: Option<Limit>,
+    /// Bytes of M that keep their value at a restart.
+    pub retentive_bytes: Option<Range>,
+    /// Watchdog of the cycle, in milliseconds.
+    pub watchdog_ms: Option<Limit>,
+    /// Accumulators and bits of each.
+    pub accumulators: Option<Limit>,
+    pub accumulator_bits: Option<Limit>,
+}
+
+/// The CPU that the manual describes; the series names stand for the others, of which it says only that they vary.
+pub static CPUS: &[Cpu] = &[
+    Cpu {
+        name: "CPU 314",
+        call_depth: Some(Limit::new(8, "S7:107")),
+        retentive_bytes: Some(Range::new(0, 15, "S7:115")),
+        watchdog_ms: Some(Limit::new(150, "S7:74")),
+        accumulators: Some(Limit::new(2, "S7:348")),
+        accumulator_bits: Some(Limit::new(32, "S7:348")),
+    },
+    series("S7-300"),
+    series("S7-400"),
+];
+
+const fn series(name: &'static str) -> Cpu {
+    Cpu { name, call_depth: None, retentive_bytes: None, watchdog_ms: None, accumulators: None, accumulator_bits: None }
+}

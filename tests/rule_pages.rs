@@ -1,0 +1,131 @@
+//! Rule pages as tests: their examples are executed, their sections are complete.
+
+use std::fmt::Write as _;
+
+use plclint::db::{self, Input};
+use plclint::lint::settings::{Folders, Overrides, Settings};
+use plclint::lint::{Rule, rules};
+use plclint::source::detect::Dialect;
+
+const SECTIONS: [&str; 6] = ["What it does", "Why", "What to do instead", "Limits", "Sources", "Examples"];
+
+struct Example {
+    line: usize,
+    dialect: Dialect,
+    bad: bool,
+    text: String,
+}
+
+fn examples(rule: &Rule) -> Vec<Example> {
+    let mut examples = Vec::new();
+    let mut open: Option<Example> = None;
+    for (line, text) in rule.page.lines().enumerate() {
+        if let Some(example) = &mut open {
+            if text.trim_end() == "```" {
+                examples.extend(open.take());
+            } else {
+                writeln!(example.text, "{text}").expect("a string");
+            }
+        } else if let Some(info) = text.strip_prefix("```") {
+            let (language, verdict) = info.split_once(',').unwrap_or((info, ""));
+            let dialect = match language {
+                "awl" => Dialect::Step7,
+                "il" => Dialect::Pl7Il,
+                "st" => Dialect::Pl7St,
+                "pl7" => Dialect::Pl7,
+                other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
+            };
+            assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
+            open = Some(Example { line: line + 1, dialect, bad: verdict == "bad", text: String::new() });
+        }
+    }
+    assert!(open.is_none(), "{}: an example is not closed", rule.name);
+    examples
+}
+
+fn found(example: &Example) -> Vec<(&'static str, String)> {
+    let overrides = Overrides { select: Some(vec!["all".to_owned()]), ..Overrides::default() };
+    let settings = Settings::without_file(Folders::default(), overrides).expect("`all` is a selection");
+    let extension = if example.dialect == Dialect::Step7 { "awl" } else { "txt" };
+    let input = Input::from_text(&format!("example.{extension}"), &example.text, example.dialect);
+    let outcome = db::check(vec![input], settings);
+    assert_eq!(outcome.internal_errors, [""; 0]);
+    let open = outcome.diagnostics.into_iter().filter(|it| it.suppressed.is_none());
+    open.map(|it| (it.finding.rule.code, it.finding.message)).collect()
+}
+
+#[test]
+fn examples_do_what_the_pages_say() {
+    let mut wrong = String::new();
+    for rule in rules() {
+        for example in examples(rule) {
+            let found = found(&example);
+            let fires = found.iter().any(|it| it.0 == rule.code);
+            if fires != example.bad {
+                let verdict = if example.bad { "bad, but silent" } else { "good, but reported" };
+                writeln!(wrong, "{} line {}: {verdict}: {found:?}\n{}", rule.name, example.line, example.text)
+                    .expect("a string");
+            }
+            // An example that cannot be read shows nothing.
+            if rule.code != "X001" && found.iter().any(|it| it.0 == "X001") {
+                writeln!(wrong, "{} line {}: not read: {found:?}\n{}", rule.name, example.line, example.text)
+                    .expect("a string");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{wrong}");
+}
+
+/// Each rule has a bad example in every dialect it is for, and a near miss.
+#[test]
+fn every_dialect_has_its_examples() {
+    let mut missing = String::new();
+    for rule in rules() {
+        let examples = examples(rule);
+        for dialect in rule.dialects {
+            let wanted: &[Dialect] = match *dialect {
+                "all" => &[Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St],
+                "pl7" => &[Dialect::Pl7Il, Dialect::Pl7St],
+                "s7" => &[Dialect::Step7],
+                "il" => &[Dialect::Pl7Il],
+                "st" => &[Dialect::Pl7St],
+                // Read in a later version.
+                "s5" | "pl72" | "ld" => &[],
+                other => panic!("{}: dialect `{other}`", rule.name),
+            };
+            for &wanted in wanted {
+                let any = examples.iter().any(|it| it.bad && (it.dialect == wanted || it.dialect == Dialect::Pl7));
+                if !any && rule.code != "X003" {
+                    writeln!(missing, "{} has no bad example for {wanted:?}", rule.name).expect("a string");
+                }
+            }
+        }
+        if !examples.iter().any(|it| !it.bad) {
+            writeln!(missing, "{} has no good example", rule.name).expect("a string");
+        }
+    }
+    assert!(missing.is_empty(), "\n{missing}");
+}
+
+#[test]
+fn pages_have_their_sections() {
+    for rule in rules() {
+        let headings: Vec<&str> = rule.page.lines().filter_map(|it| it.strip_prefix("## ")).collect();
+        for section in SECTIONS {
+            assert!(headings.contains(&section), "{}: no section `{section}`", rule.name);
+        }
+        assert!(rule.page.starts_with(&format!("# {} ({})\n", rule.name, rule.code)), "{}: title", rule.name);
+        assert!(!rule.help().is_empty() && !rule.why().is_empty(), "{}: empty section", rule.name);
+        assert!(rule.summary.ends_with('.'), "{}: the summary is a sentence", rule.name);
+        assert!(rule.name.chars().all(|it| it.is_ascii_lowercase() || it.is_ascii_digit() || it == '-'));
+    }
+}
+
+#[test]
+fn codes_and_names_are_unique() {
+    let mut codes: Vec<&str> = rules().iter().flat_map(|it| [it.code, it.name]).collect();
+    codes.sort_unstable();
+    let before = codes.len();
+    codes.dedup();
+    assert_eq!(codes.len(), before);
+}
