@@ -56,6 +56,14 @@ impl Rule {
         section(self.page, "What to do instead")
     }
 
+    /// The page below its title.
+    pub fn body(&self) -> &'static str {
+        match self.page.strip_prefix("# ") {
+            Some(rest) => rest.split_once('\n').map_or("", |it| it.1.trim_start()),
+            None => self.page,
+        }
+    }
+
     /// The page's section `## What it does`.
     pub fn what(&self) -> &'static str {
         section(self.page, "What it does")

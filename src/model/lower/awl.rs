@@ -18,11 +18,12 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Mode, OddityKind, Pin, Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, Mode, OddityKind, Pin, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Relation};
 use crate::syntax::{Language, Mnemonics, SyntaxKind, SyntaxNode};
+use crate::target;
 
 /// Lowers one block or listing.
 pub fn lower(root: &SyntaxNode, entity: Entity, mnemonics: Mnemonics) -> UnitModel {
@@ -718,7 +719,7 @@ impl Machine {
         if when == Exprs::TRUE {
             self.discard(range);
         }
-        self.b.statement(StatementKind::Return { when }, range);
+        self.b.statement(StatementKind::Return { when, how: Leave::Unit }, range);
         self.b.leave(when, DeadCause::End, range);
     }
 
@@ -834,7 +835,7 @@ impl Machine {
                 };
                 self.nesting.push(nest);
                 let depth = index(self.nesting.len());
-                if depth > 7 {
+                if depth > target::step7::PARENTHESIS_DEPTH.value {
                     self.b.oddity(OddityKind::ParenthesisDepth(depth), range, "(");
                 }
                 self.fresh = true;
