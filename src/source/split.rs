@@ -215,34 +215,12 @@ fn step7(units: &mut Units<'_>, hint: &SplitHint) {
 
 /// The mnemonic set of a file.
 fn mnemonics(text: &str) -> Mnemonics {
-    vote(text).unwrap_or(if memchr::memmem::find(text.as_bytes(), "«".as_bytes()).is_some() {
+    crate::syntax::awl::vote(text).unwrap_or(if memchr::memmem::find(text.as_bytes(), "«".as_bytes()).is_some() {
         // Only French documents quote symbols so, and they use the German set.
         Mnemonics::German
     } else {
         Mnemonics::English
     })
-}
-
-/// TO BE REPLACED AT MERGE by `crate::syntax::awl::vote`, which has the whole table of unambiguous words.
-fn vote(text: &str) -> Option<Mnemonics> {
-    const ENOUGH: i32 = 64;
-    const GERMAN: [&str; 12] = ["U", "UN", "SPA", "SPB", "SPBN", "AUF", "BEA", "BEB", "SV", "SA", "ZV", "ZR"];
-    const ENGLISH: [&str; 10] = ["AN", "JU", "JC", "JCN", "OPN", "BEU", "BEC", "SD", "CU", "CD"];
-    let mut german: i32 = 0;
-    for line in Lines::new(text, Comments::Step7) {
-        let (first, rest) = word(line.code);
-        let (mnemonic, _) = rest.trim_start().strip_prefix(':').map_or((first, rest), |code| word(code.trim_start()));
-        german += i32::from(GERMAN.iter().any(|word| word.eq_ignore_ascii_case(mnemonic)));
-        german -= i32::from(ENGLISH.iter().any(|word| word.eq_ignore_ascii_case(mnemonic)));
-        if german.abs() >= ENOUGH {
-            break;
-        }
-    }
-    match german {
-        0 => None,
-        1.. => Some(Mnemonics::German),
-        _ => Some(Mnemonics::English),
-    }
 }
 
 /// PL7 as it is pasted in documents: headings, and code before the first one.
