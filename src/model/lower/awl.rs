@@ -355,7 +355,7 @@ impl Machine {
                 SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::CharString | SyntaxKind::PointerConstant,
             )
             | Some(SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Hash) => return self.constant(&text, range),
-            Some(SyntaxKind::LocalName) => self.local(&text, has_index),
+            Some(SyntaxKind::LocalName) => Operand::Object(self.local(&text, has_index)),
             Some(SyntaxKind::QuotedSymbol) => {
                 let mut object = Object::symbol(&text);
                 object.indexed = has_index;
@@ -372,7 +372,16 @@ impl Machine {
                 let ty = indirect_type(&text);
                 return Operand::Object(self.indirect(&text, ty));
             }
-            Some(_) => self.address(&text, range),
+            Some(_) => match text.to_ascii_uppercase().as_str() {
+                "TRUE" => Operand::Constant(Exprs::TRUE),
+                "FALSE" => Operand::Constant(Exprs::FALSE),
+                "AR1" | "AR2" => Operand::Other,
+                // Not cached when it is none: each place is reported.
+                _ => match self.address(&text, range) {
+                    Ok(object) => Operand::Object(object),
+                    Err(object) => return Operand::Object(object),
+                },
+            },
             None => Operand::Other,
         };
         if !matches!(operand, Operand::Other) {
@@ -393,11 +402,11 @@ impl Machine {
         })
     }
 
-    fn local(&mut self, text: &str, indexed: bool) -> Operand {
+    fn local(&mut self, text: &str, indexed: bool) -> ObjectId {
         let name = text.trim_start_matches('#').replace('"', "").to_lowercase();
         let root = name.split(['.', '[']).next().unwrap_or_default();
         let ty = if root == name { self.declared.get(root).copied().unwrap_or(Type::Unknown) } else { Type::Unknown };
-        Operand::Object(self.b.object(Object {
+        self.b.object(Object {
             text: text.into(),
             class: Class::LocalName,
             ty,
@@ -405,22 +414,23 @@ impl Machine {
             rights: Rights::Unknown,
             extracted: false,
             indexed,
-        }))
+        })
     }
 
-    fn address(&mut self, text: &str, range: TextRange) -> Operand {
+    /// `Err`: what stands for a text that is no address.
+    fn address(&mut self, text: &str, range: TextRange) -> Result<ObjectId, ObjectId> {
         let root = text.split(['.', '[']).next().unwrap_or_default().to_lowercase();
         if self.declared.contains_key(root.as_str()) {
-            return self.local(text, false);
+            return Ok(self.local(text, false));
         }
         match object::step7::parse(text, self.mnemonics) {
-            Ok(object) => Operand::Object(self.b.object(object)),
+            Ok(object) => Ok(self.b.object(object)),
             Err(error) => {
                 self.b.oddity(OddityKind::Address(error), range, text);
                 let mut object = Object::symbol(text);
                 object.class = Class::Indirect;
                 object.footprint.area = object::Area::Indirect;
-                Operand::Object(self.b.object(object))
+                Err(self.b.object(object))
             }
         }
     }
