@@ -61,7 +61,7 @@ impl<'a> ObjectUses<'a> {
     /// Whether every unit that uses the object writes it before it reads it: a scratch value that does not outlive the
     /// unit, so that units do not disturb one another through it.
     pub fn is_scratch(&self) -> bool {
-        self.object.class == Class::Memory
+        matches!(self.object.class, Class::Memory | Class::Symbol)
             && self.is_read()
             && self.uses.iter().all(|it| !it.mode.is_edge() && it.mode != Mode::EdgeMemory)
             && self.with_mode(Mode::reads).all(|it| !it.it.exposed)
@@ -106,6 +106,7 @@ pub struct ProgramIndex<'a> {
     /// write, a read or a call say something.
     pub complete: bool,
     exclusive: FxHashSet<(u32, u32, u32)>,
+    names: FxHashMap<UnitName, u32>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -132,7 +133,7 @@ impl<'a> ProgramIndex<'a> {
             .flat_map(|(unit, facts)| facts.exclusive_calls.iter().map(move |&(a, b)| (as_index(unit), a, b)))
             .collect();
         let objects = collect(&units, &order, &calls);
-        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive }
+        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive, names }
     }
 
     /// Whether two units can run in the same scan of the same context.
@@ -192,8 +193,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Index of the data block, FB, ... of that name.
     pub fn unit_named(&self, name: &BlockName) -> Option<u32> {
-        let at = self.units.iter().position(|it| matches!(&it.entity, Entity::Block { name: it, .. } if it == name));
-        at.map(as_index)
+        self.names.get(&UnitName::Block(name.clone())).copied()
     }
 
     /// Pairs of distinct objects that share memory, by index, the earlier address first.
