@@ -82,6 +82,11 @@ impl GlobalCall<'_> {
     pub fn site(&self) -> Site {
         Site { unit: self.unit, anchor: self.it.anchor }
     }
+
+    /// Place of the instance data block; the callee's when the call names none.
+    pub fn instance_site(&self) -> Site {
+        Site { unit: self.unit, anchor: self.it.instance_anchor.unwrap_or(self.it.anchor) }
+    }
 }
 
 #[derive(Debug)]
@@ -137,6 +142,15 @@ impl<'a> ProgramIndex<'a> {
         }
         let (x, y) = (&self.contexts[a as usize], &self.contexts[b as usize]);
         x.iter().any(|it| y.contains(it)) && !self.exclusive_units(a, b)
+    }
+
+    /// Whether two calls can both happen in the same scan of the same context.
+    pub fn calls_in_same_scan(&self, a: &GlobalCall<'_>, b: &GlobalCall<'_>) -> bool {
+        let (first, second) = (a.index.min(b.index), a.index.max(b.index));
+        a.it.reachable
+            && b.it.reachable
+            && self.same_scan(a.unit, b.unit)
+            && (a.unit != b.unit || !self.exclusive.contains(&(a.unit, first, second)))
     }
 
     /// Whether two units are called under conditions that exclude each other, as far as their only calls tell.

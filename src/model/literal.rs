@@ -72,6 +72,21 @@ pub fn s5time_encoding(milliseconds: u64) -> S5Encoding {
     S5Encoding { base_ms, count, represented_ms: count * base_ms }
 }
 
+/// The longest-unit-first spelling of a duration: `S5T#1M_35S`.
+pub fn s5time_text(milliseconds: u64) -> String {
+    let units = [("H", 3_600_000), ("M", 60_000), ("S", 1_000), ("MS", 1)];
+    let mut rest = milliseconds;
+    let mut parts = Vec::new();
+    for (unit, length) in units {
+        let count = rest / length;
+        rest %= length;
+        if count > 0 {
+            parts.push(format!("{count}{unit}"));
+        }
+    }
+    if parts.is_empty() { "S5T#0MS".to_owned() } else { format!("S5T#{}", parts.join("_")) }
+}
+
 /// What a timer reads in a word loaded as its duration, as in `L W#16#2009` (S7:581-587). `None` when a digit is not
 /// decimal. Bits 14 and 15 are not used (S7:570).
 pub fn s5time_from_word(word: u16) -> Option<S5Encoding> {
