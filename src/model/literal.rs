@@ -541,6 +541,16 @@ mod tests {
 
     use super::*;
 
+    #[test]
+    fn durations_are_spelled_as_they_are_read() {
+        for (milliseconds, text) in
+            [(0, "S5T#0MS"), (95_000, "S5T#1M_35S"), (S5TIME_MAX_MS, "S5T#2H_46M_30S"), (3_600_010, "S5T#1H_10MS")]
+        {
+            assert_eq!(s5time_text(milliseconds), text);
+            assert_eq!(parse_step7(text), Ok(Value::S5Time { milliseconds }), "{text}");
+        }
+    }
+
     fn int(value: i64, ty: IntType) -> Value {
         Value::Int { value, ty }
     }

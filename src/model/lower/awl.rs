@@ -425,6 +425,9 @@ impl Machine {
         }
         match object::step7::parse(text, self.mnemonics) {
             Ok(object) => Ok(self.b.object(object)),
+            Err(error) if error.suggestion.is_none() && is_bare_symbol(text, self.mnemonics) => {
+                Ok(self.b.object(Object::symbol(text)))
+            }
             Err(error) => {
                 self.b.oddity(OddityKind::Address(error), range, text);
                 let mut object = Object::symbol(text);
@@ -907,7 +910,8 @@ impl Machine {
             self.label(&text, range);
         }
         let Some(range) = instruction_range(instr) else { return };
-        let Some(op) = instr.op(self.mnemonics) else {
+        let broken = instr.syntax().children().any(|it| it.kind() == SyntaxKind::Error);
+        let Some(op) = instr.op(self.mnemonics).filter(|_| !broken) else {
             self.b.instruction(range);
             self.forget();
             return;
@@ -1407,6 +1411,16 @@ fn comparison(relation: Relation) -> Comparison {
     }
 }
 
+/// Whether a word that is no address may be a symbol without its quotes: it has not the form of one, letters and a
+/// number, and a number is not all that it lacks.
+fn is_bare_symbol(text: &str, mnemonics: Mnemonics) -> bool {
+    let letters = text.bytes().take_while(u8::is_ascii_alphabetic).count();
+    let numbered = letters <= 4 && text.as_bytes().get(letters).is_some_and(u8::is_ascii_digit);
+    let is_word = text.chars().all(|it| it.is_alphanumeric() || matches!(it, '_' | '.'));
+    let lacks_number = || ["0", "0.0"].iter().any(|it| object::step7::parse(&format!("{text}{it}"), mnemonics).is_ok());
+    is_word && !numbered && !lacks_number()
+}
+
 fn is_binary_result(text: &str) -> bool {
     text.eq_ignore_ascii_case("BR") || text.eq_ignore_ascii_case("BIE")
 }
@@ -1579,7 +1593,68 @@ mod tests {
         // Used on one of two ways is used.
         assert_eq!(names("L MW0\nU E0.0\nSPB A1\nT MW2\nA1: NOP 0"), [""; 0]);
         // S7:1228: loaded where a store was meant.
-        assert_eq!(names("AUF DB5\nL 0\nL DB5.DBW0\nBE"), ["DeadLoad", "DeadLoad"]);
+        assert_eq!(names("AUF DB5\nL 0\nL DB5.DBW0\nBE"), ["DeadLoad"]);
+        // How far a shift goes is an operand, too.
+        assert_eq!(names("L MW0\nSLW\nT MW2"), ["MissingOperand(1)"]);
+        assert_eq!(names("L MW0\nSLW 4\nRLDA\nT MW2"), [""; 0]);
+    }
+
+    #[test]
+    fn lost_loads_in_a_row_are_one_finding() {
+        let model = block("L MW0\nL MW2\nL MW4\nT MW6\nSET\nL MW8\nL MW10\nL MW12\nBE");
+        let dead: Vec<(&str, usize)> = model
+            .oddities
+            .iter()
+            .map(|it| (it.text.as_str(), it.related.iter().filter(|it| it.1 == LOST_TOO).count()))
+            .collect();
+        // MW4 is stored, and MW2 lies under it until MW10 is loaded.
+        assert_eq!(dead, [("MW2", 1), ("MW12", 2)]);
+    }
+
+    #[test]
+    fn a_function_answers_in_accumulator_1() {
+        assert_eq!(names("L MW0\nT MW2\nL MW4"), [""; 0]);
+        assert_eq!(names("L MW0\nT MW2\nL MW4\nBE"), [""; 0]);
+        let parse = crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
+        let name = BlockName::Number(BlockKind::Ob, 1);
+        let model = lower(&parse.syntax(), Entity::Block { kind: BlockKind::Ob, name }, Mnemonics::German);
+        assert_eq!(model.oddities.len(), 1, "nobody called it");
+    }
+
+    #[test]
+    fn every_entry_of_a_jump_list_is_reached() {
+        let model = block("L MB0\nSPL E3\nSPA E1\nSPA E2\nE3: SPA E2\nE1: U E0.0\n= A4.0\nE2: NOP 0");
+        assert!(model.unreachable.is_empty(), "{:?}", model.unreachable);
+        // The list ends with the first instruction that is no jump.
+        let model = block("L MB0\nSPL E3\nSPA E1\nNOP 0\nSPA E2\nSPA E1\nE3: NOP 0\nE1: NOP 0\nE2: NOP 0");
+        assert_eq!(model.unreachable.len(), 1);
+    }
+
+    #[test]
+    fn what_closes_a_block_is_no_dead_code() {
+        // S7:1230-1231.
+        assert!(block("U E0.0\nSPB W1\nL 0\nT MW0\nW1: BEA\nNOP 0\nBE").unreachable.is_empty());
+        assert!(model("SPA W1\n...\nU E0.0\n= A4.0\nW1: NOP 0\n").unreachable.is_empty(), "a label may be left out");
+    }
+
+    #[test]
+    fn initial_values_are_read() {
+        let text = "FUNCTION_BLOCK FB 1\nVAR\na : S5TIME := S5T#5S_12MS;\nb : INT := 5;\nc : ARRAY [0..3] OF INT := 4(0);\n\
+                    END_VAR\nBEGIN\nEND_FUNCTION_BLOCK\n";
+        let texts: Vec<SmolStr> = model(text).constants.into_iter().map(|it| it.text).collect();
+        assert_eq!(texts, ["S5T#5S_12MS"]);
+        let text = "DATA_BLOCK DB 1\nSTRUCT\na : WORD;\nEND_STRUCT;\nBEGIN\na := W#16#12345;\nEND_DATA_BLOCK\n";
+        assert_eq!(model(text).oddities.len(), 1);
+    }
+
+    #[test]
+    fn words_that_are_no_addresses() {
+        assert_eq!(names("U TRUE\nO FALSE\n= A4.0\nLAR1 AR2"), [""; 0]);
+        assert_eq!(names("U Depart\n= Lampe_1"), [""; 0], "symbols without their quotes");
+        let malformed = |code: &str| block(code).oddities.iter().filter(|it| matches!(it.kind, OddityKind::Address(_))).count();
+        assert_eq!(malformed("U E1\n= A4.0\nU E1\n= A4.1"), 2, "each place");
+        assert_eq!(malformed("L MW\nT MW2"), 1);
+        assert_eq!(malformed("U I1.0\n= A4.0"), 1);
     }
 
     #[test]
