@@ -125,11 +125,26 @@ fn odd_files() {
         "U E0.0 // \u{e9}\u{2028}\u{85}\n= A4.0".as_bytes().to_vec(),
         b"U E0.0 // \xe9t\xe9\n= A4.0".to_vec(),
         b"U".repeat(10_000_000),
-        [b"U E 0.0; ".repeat(1_000_000), b"\n".to_vec()].concat(),
+        b"U E 0.0; ".repeat(100_000),
+        b"%M0 := %M1; ".repeat(50_000),
     ] {
         for dialect in [Dialect::Auto, Dialect::Step7, Dialect::Pl7St] {
             check(&bytes, dialect, None);
         }
+    }
+}
+
+#[test]
+fn lines_of_ten_megabytes() {
+    let mnemonics = syntax::Mnemonics::German;
+    for (line, language) in [
+        ("U E 0.0; ", syntax::Language::Awl(mnemonics)),
+        ("%M0 := %M1; ", syntax::Language::Pl7St),
+        ("LD %M0 ST %M1 ", syntax::Language::Pl7Il),
+        ("%MW0 = = ( ", syntax::Language::Pl7St),
+    ] {
+        let text = line.repeat(10_000_000 / line.len());
+        assert!(syntax::parse(language, &text).syntax().text() == text.as_str());
     }
 }
 
@@ -158,8 +173,8 @@ fn time_is_linear() {
             }
             best
         };
-        let small = time(1000);
-        let large = time(16_000);
-        assert!(large < small * 100 + Duration::from_millis(50), "{shape:?}: {small:?} for 1000, {large:?} for 16 000");
+        let small = time(250);
+        let large = time(4000);
+        assert!(large < small * 100 + Duration::from_millis(50), "{shape:?}: {small:?} for 250, {large:?} for 4000");
     }
 }
