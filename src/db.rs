@@ -134,7 +134,8 @@ pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitFacts {
 pub fn unit_findings<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Ran<TextRange> {
     let project = db.project();
     let settings = project.settings(db);
-    let target = target_of(settings);
+    let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
+    let target = target_of(settings, family);
     let cx = UnitCx::new(model(db, unit), tree(db, unit), unit.text(db), settings, &target);
     run_rules(settings, |rule, findings| match rule.check {
         Check::Unit(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
@@ -233,7 +234,7 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
 pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
     let project = db.project();
     let settings = project.settings(db);
-    let target = target_of(settings);
+    let target = target_of(settings, program.family(db));
     let facts = program_units(db, program).iter().map(|&unit| facts(db, unit)).collect();
     let index = ProgramIndex::new(program.family(db), facts);
     let cx = ProgramCx::new(&index, settings, &target);
@@ -293,8 +294,10 @@ fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec
     ran
 }
 
-fn target_of(settings: &Settings) -> Target {
-    settings.controller().and_then(|it| it.parse().ok()).unwrap_or_default()
+/// The controller of the settings when it is one of that vendor's, else whatever holds for all of them.
+fn target_of(settings: &Settings, family: Family) -> Target {
+    let configured = settings.controller().and_then(|it| it.parse().ok());
+    configured.filter(|it: &Target| it.family() == family).unwrap_or(Target::any(family))
 }
 
 /// All findings of a file, sorted by place and code; suppressed ones are marked.

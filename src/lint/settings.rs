@@ -13,9 +13,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::finding::Severity;
-use super::nearest::nearest;
 use super::rule::{Rule, rules};
 use super::select::{Selection, Selector};
+use crate::source::decode::Encoding;
 
 /// Name of the configuration file.
 pub const FILE_NAME: &str = "plclint.toml";
@@ -34,6 +34,7 @@ struct Inner {
     include: Option<Gitignore>,
     exclude: Option<Gitignore>,
     entities: Vec<(Gitignore, usize)>,
+    encoding: Option<Encoding>,
 }
 
 struct PerFileRules {
@@ -74,6 +75,7 @@ impl Default for Settings {
             include: None,
             exclude: None,
             entities: Vec::new(),
+            encoding: None,
         }))
     }
 }
@@ -115,13 +117,13 @@ struct File {
 }
 
 /// The controller that programs are for.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Target {
+struct Target {
     /// `TSX 37-22`, `CPU 314`.
-    pub controller: Option<String>,
+    controller: Option<Spanned<String>>,
     /// `V3`, where the documents distinguish versions.
-    pub version: Option<String>,
+    version: Option<String>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -294,15 +296,18 @@ impl Settings {
     ) -> Result<Self, ConfigError> {
         let text = Text { path, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
         let mut file: File = toml::from_str(text.text).map_err(|it| text.error(it.span(), it.message().trim()))?;
-        if let Some(encoding) = &file.files.encoding
-            && !is_encoding(encoding.get_ref())
-        {
-            return Err(text.error(Some(encoding.span()), unknown_encoding(encoding.get_ref())));
+        let mut forced = None;
+        if let Some(name) = &file.files.encoding {
+            forced = encoding(name.get_ref()).map_err(|it| text.error(Some(name.span()), it))?;
         }
-        if let Some(encoding) = &overrides.encoding
-            && !is_encoding(encoding)
-        {
-            return Err(ConfigError { origin: Origin::Option("--encoding"), message: unknown_encoding(encoding) });
+        if let Some(name) = &overrides.encoding {
+            forced = encoding(name).map_err(|message| ConfigError { origin: Origin::Option("--encoding"), message })?;
+        }
+        if let Some(name) = &file.target.controller {
+            controller(name.get_ref()).map_err(|it| text.error(Some(name.span()), it))?;
+        }
+        if let Some(name) = &overrides.controller {
+            controller(name).map_err(|message| ConfigError { origin: Origin::Option("--target"), message })?;
         }
         let base = selection(registry, &text, &file.rules, &overrides)?;
         let mut per_file = Vec::new();
@@ -329,7 +334,17 @@ impl Settings {
         }
         let include = text.globs(&file.files.include)?;
         let exclude = text.globs(&file.files.exclude)?;
-        Ok(Self(Arc::new(Inner { folders, file, overrides, base, per_file, include, exclude, entities })))
+        Ok(Self(Arc::new(Inner {
+            folders,
+            file,
+            overrides,
+            base,
+            per_file,
+            include,
+            exclude,
+            entities,
+            encoding: forced,
+        })))
     }
 
     /// Which rules are on for a file.
@@ -363,15 +378,17 @@ impl Settings {
         selection.rules().collect()
     }
 
+    /// The controller, by a name that [`crate::target::Target`] reads.
     pub fn controller(&self) -> Option<&str> {
-        self.0.overrides.controller.as_deref().or(self.0.file.target.controller.as_deref())
+        let file = self.0.file.target.controller.as_ref().map(|it| it.get_ref().as_str());
+        self.0.overrides.controller.as_deref().or(file)
     }
 
     /// The controller's version; none when the command line names another controller than the file.
     pub fn version(&self) -> Option<&str> {
         let target = &self.0.file.target;
         match &self.0.overrides.controller {
-            Some(controller) if target.controller.as_ref() != Some(controller) => None,
+            Some(controller) if target.controller.as_ref().map(|it| it.get_ref()) != Some(controller) => None,
             _ => target.version.as_deref(),
         }
     }
@@ -398,10 +415,9 @@ impl Settings {
         self.0.file.program.scope
     }
 
-    /// Label of the encoding to read files without a byte order mark with.
-    pub fn encoding(&self) -> Option<&str> {
-        let file = self.0.file.files.encoding.as_ref().map(|it| it.get_ref().as_str());
-        self.0.overrides.encoding.as_deref().or(file)
+    /// The encoding to read files with that carry no byte order mark.
+    pub fn encoding(&self) -> Option<Encoding> {
+        self.0.encoding
     }
 
     /// The table `[rules.options.<rule>]`, by the name of the rule.
@@ -508,20 +524,14 @@ fn selection(
     Ok(selection)
 }
 
-/// Code pages of DOS, which the web's list of encodings does not have.
-const CODE_PAGES: [&str; 4] = ["cp850", "ibm850", "cp437", "ibm437"];
-
-fn is_encoding(label: &str) -> bool {
-    encoding_rs::Encoding::for_label(label.as_bytes()).is_some()
-        || CODE_PAGES.iter().any(|it| it.eq_ignore_ascii_case(label.trim()))
+/// Whether the tables know a controller.
+fn controller(name: &str) -> Result<(), String> {
+    name.parse::<crate::target::Target>().map(drop).map_err(|it| it.to_string())
 }
 
-fn unknown_encoding(label: &str) -> String {
-    const COMMON: [&str; 7] = ["utf-8", "windows-1252", "iso-8859-1", "windows-1251", "cp850", "cp437", "utf-16le"];
-    match nearest(label, COMMON) {
-        Some(nearest) => format!("`{label}` is no known encoding; did you mean `{nearest}`?"),
-        None => format!("`{label}` is no known encoding"),
-    }
+/// Reads the name of an encoding; `auto` is none.
+fn encoding(name: &str) -> Result<Option<Encoding>, String> {
+    Encoding::parse_option(name).map_err(|it| it.to_string())
 }
 
 #[cfg(test)]
@@ -589,7 +599,7 @@ mod tests {
         .unwrap();
         assert_eq!((settings.controller(), settings.version()), (Some("TSX 37-22"), Some("V3")));
         assert_eq!((settings.objects("M"), settings.objects("MW")), (Some(256), None));
-        assert_eq!(settings.encoding(), Some("windows-1252"));
+        assert_eq!(settings.encoding(), Some(Encoding::Windows1252));
         assert_eq!(settings.entity_address("sub/poste1.st"), Some("MAST SR3"));
         assert_eq!(settings.entity_address("poste2.st"), None);
         assert_eq!(settings.tasks()[0].io, ["%I3.8:8"]);
@@ -621,7 +631,7 @@ mod tests {
         let error = |text: &str| parse(text).unwrap_err().to_string();
         assert_eq!(
             error("[rules]\nignore = ['W001', 'singel-write']\n"),
-            "plclint.toml:2:20: no rule or group is called `singel-write`; did you mean `single-write`?"
+            "plclint.toml:2:19: no rule or group is called `singel-write`; did you mean `single-write`?"
         );
         assert!(
             error("[rules.severity]\nÜ = 'error'").starts_with("plclint.toml:2:1: "),
@@ -636,7 +646,8 @@ mod tests {
         assert!(error("[rules.options.W]\nx = 1").contains("is not one rule"));
         assert!(error("[rules]\nselekt = []").starts_with("plclint.toml:2:1: unknown field `selekt`"));
         assert!(error("[[per-file]]\nignore = []").contains("missing field `path`"));
-        assert!(error("[files]\nencoding = 'windows-1225'").contains("did you mean `windows-1252`?"));
+        assert!(error("[target]\ncontroller = 'TSX 99'").starts_with("plclint.toml:2:14: unknown controller"));
+        assert!(error("[files]\nencoding = 'windows-1225'").starts_with("plclint.toml:2:12: unknown encoding"));
         assert!(error("[files]\nexclude = ['a{']").starts_with("plclint.toml:2:12: "));
         assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));
         assert!(error("[program]\nscope = 'galaxy'").contains("unknown variant"));

@@ -4,6 +4,8 @@ use super::finding::Severity;
 use super::rule::{Check, Rule};
 
 const PAGE: &str = "\
+# the-title (T001)
+
 ## What it does
 
 Finds a bit that several places drive by assignment.

@@ -172,9 +172,14 @@ pub enum StatementKind {
     },
     Call(u32),
     Jump(u32),
-    /// Back to the caller, or end of the task.
+    /// Back to the caller, or end of the unit.
     Return {
         when: ExprId,
+        how: Leave,
+    },
+    /// The program goes one of two ways: an `IF`, a loop.
+    Branch {
+        condition: ExprId,
     },
     Halt,
     /// Leaves the innermost loop.
@@ -183,6 +188,15 @@ pub enum StatementKind {
     Open,
     /// Anything else that acts: a conversion in place, a master control relay.
     Other,
+}
+
+/// What an instruction leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Leave {
+    /// `RET`, `RETURN`: only a subroutine has a caller to go back to.
+    Subroutine,
+    /// `END`, `BE`, `BEA`, `BEB`: the block or task ends for this scan.
+    Unit,
 }
 
 /// One step of the program, in execution order.

@@ -52,6 +52,13 @@ mod tests {
     fn a_finding_is_a_line() {
         let mut out = Vec::new();
         write(Format::Concise, &sample(), &Options::default(), &mut out).unwrap();
-        insta::assert_snapshot!(String::from_utf8(out).unwrap(), @"");
+        insta::assert_snapshot!(String::from_utf8(out).unwrap(), @r"
+        line1/a b.awl:3:3: W001[single-write] warning: «Ventil» (A 4.0) is driven in 2 places [FC1]
+        line1/a b.awl:4:5: J001[duplicate-label] error: label M999 is defined twice [FC1]
+        line1/b.awl:4:1: J005[unused-label] note: no jump targets X0 [FC1]
+        line1/b.awl:4:5: I004[unbalanced-parentheses] error: `)` closes nothing [FC1]
+        line1/a.ld: not read: PL7 ladder (.LD) is not supported
+        line1/c.awl: not read: permission denied
+        ");
     }
 }

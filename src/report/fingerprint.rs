@@ -8,6 +8,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::lint::SourceView;
+use crate::source::decode::{Encoding, encode};
 
 const WINDOW: usize = 100;
 const BASE: u64 = 37;
@@ -85,25 +86,19 @@ fn as_uploaded(file: &SourceView) -> std::borrow::Cow<'_, str> {
     }
 }
 
-/// The bytes that a file of a single-byte encoding was decoded from; `None` for UTF-8 and for encodings that are not
-/// written.
+/// The bytes that a file of a single-byte encoding was decoded from.
 fn bytes(file: &SourceView) -> Option<Vec<u8>> {
-    let encoding = encoding_rs::Encoding::for_label(file.encoding.as_bytes())?;
-    if !encoding.is_single_byte() {
-        return None;
-    }
-    let (bytes, _, unmappable) = encoding.encode(&file.text);
-    (!unmappable).then(|| bytes.into_owned())
+    let encoding: Encoding = file.encoding.parse().ok()?;
+    if encoding.is_single_byte() { encode(&file.text, encoding, false).ok() } else { None }
 }
 
 /// Length in bytes of the file on disk, where it can be told from the text. A byte order mark is not counted.
 pub(super) fn length(file: &SourceView) -> Option<usize> {
-    if file.text.is_ascii() && !file.encoding.to_ascii_lowercase().starts_with("utf-16")
-        || file.encoding.eq_ignore_ascii_case("utf-8")
-    {
-        return Some(file.text.len());
+    match file.encoding.parse().ok()? {
+        Encoding::Utf8 => Some(file.text.len()),
+        Encoding::Utf16Le | Encoding::Utf16Be => Some(2 * file.text.encode_utf16().count()),
+        _ => Some(file.text.chars().count()),
     }
-    bytes(file).map(|it| it.len())
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use anstyle::{AnsiColor, Style};
 use ariadne::{Color, Config, IndexType, Label, Report, ReportKind, Source};
 use rustc_hash::FxHashMap;
 
-use super::position::Positions;
+use super::position::{LineCol, LineIndex, Positions};
 use super::{Options, citation, visible, visible_char};
 use crate::lint::{Applicability, Diagnostic, Location, Outcome, Severity, UnreadReason};
 
@@ -69,13 +69,12 @@ struct Picture {
 }
 
 impl Picture {
-    fn new(text: &str, lines: impl Iterator<Item = std::ops::Range<usize>>) -> Self {
+    fn new(text: &str, index: &LineIndex) -> Self {
         let mut shown = String::with_capacity(text.len());
         let mut bounds = Vec::new();
         let mut offset = 0;
-        for line in lines {
-            let line = text.get(line).unwrap_or_default().trim_end_matches(['\n', '\r']);
-            let mut characters = line.chars();
+        for number in 1..=index.line_count() {
+            let mut characters = index.line_text(text, number).unwrap_or_default().chars();
             let before = shown.len();
             shown.extend(characters.by_ref().take(LINE_LIMIT).map(visible_char));
             let mut length = shown[before..].chars().count();
@@ -93,7 +92,7 @@ impl Picture {
     }
 
     /// Offset in the picture; a place on the part of a line that is cut off becomes the ellipsis.
-    fn offset(&self, place: super::position::LineCol) -> usize {
+    fn offset(&self, place: LineCol) -> usize {
         let (start, shown) = self.lines.get(place.line as usize - 1).copied().unwrap_or_default();
         start + (place.column as usize - 1).min(shown)
     }
@@ -108,7 +107,7 @@ impl Pictures<'_> {
     fn make(&mut self, file: u32) -> Option<&Picture> {
         if !self.made.contains_key(&file) {
             let text = &self.positions.file(file)?.text;
-            let picture = Picture::new(text, self.positions.index(file)?.lines());
+            let picture = Picture::new(text, self.positions.index(file)?);
             self.made.insert(file, picture);
         }
         self.made.get(&file)
@@ -170,7 +169,6 @@ fn render(
     }
     let label = finding.label.as_deref().unwrap_or("here");
     let Some(primary) = pictures.mark(&finding.place, label, true) else { return Ok(()) };
-    let Some(file) = pictures.positions.file(finding.place.file) else { return Ok(()) };
     let Some(span) = pictures.positions.span(finding.place.file, finding.place.range) else { return Ok(()) };
 
     let mut marks = Vec::new();
@@ -196,11 +194,8 @@ fn render(
     }
     excerpts.sort_by_key(|it| !it.iter().any(|it| it.primary));
 
-    let kind = format!("{}[{} {}]", finding.severity.as_str(), finding.rule.code, finding.rule.name);
     let config = Config::default().with_index_type(IndexType::Char).with_color(options.colour).with_cross_gap(false);
-    let mut report = Report::build(ReportKind::Custom(&kind, colour), ((at.0, 0), primary_range))
-        .with_config(config)
-        .with_message(visible(&finding.message));
+    let mut report = Report::build(ReportKind::Error, ((at.0, 0), primary_range)).with_config(config);
     for (number, excerpt) in (0..).zip(excerpts) {
         for mark in excerpt {
             let colour = if mark.primary { colour } else { related_colour };
@@ -219,20 +214,22 @@ fn render(
     }
     report.add_note(notes(diagnostic));
 
+    let style = if options.colour { style(finding.severity) } else { Style::new() };
+    let (severity, rule) = (finding.severity.as_str(), finding.rule);
+    writeln!(out, "{style}{severity}[{} {}]{style:#}: {}", rule.code, rule.name, visible(&finding.message))?;
     let mut text = Vec::new();
     report.finish().write(&mut *pictures, &mut text)?;
-    let mut text = String::from_utf8_lossy(&text).into_owned();
-    if span.start.column as usize > LINE_LIMIT + 1 {
-        // The header names the ellipsis; the place is further on.
-        let path = visible(&file.path);
-        let shown = format!("{path}:{}:{} ", span.start.line, LINE_LIMIT + 1);
-        let header = text.find('\n').map_or(text.len(), |it| it + 1);
-        let (first, rest) = text.split_at(header);
-        let place = format!("{path}:{}:{} ", span.start.line, span.start.column);
-        text = format!("{first}{}", rest.replacen(&shown, &place, 1));
-    }
-    for line in text.lines() {
-        writeln!(out, "{}", line.trim_end())?;
+    let text = String::from_utf8_lossy(&text);
+    // The first line is the title, which takes no colour of ours.
+    for (number, line) in text.lines().skip(1).enumerate() {
+        if number == 0 && span.start.column as usize > LINE_LIMIT + 1 {
+            // The header names the ellipsis; the place is further on.
+            let shown = format!(":{}:{} ", span.start.line, LINE_LIMIT + 1);
+            let place = format!(":{}:{} ", span.start.line, span.start.column);
+            writeln!(out, "{}", line.replacen(&shown, &place, 1).trim_end())?;
+        } else {
+            writeln!(out, "{}", line.trim_end())?;
+        }
     }
     writeln!(out)
 }

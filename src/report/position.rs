@@ -1,63 +1,11 @@
 //! Lines and columns as every report shows them.
 
 use std::cell::OnceCell;
-use std::ops::Range;
 
 use rowan::{TextRange, TextSize};
 
 use crate::lint::{Outcome, SourceView};
-
-/// A place to show. Both count from 1; columns count characters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct LineCol {
-    pub line: u32,
-    pub column: u32,
-}
-
-/// Where the lines of a text begin. Lines end with LF, CRLF or a lone CR, as editors and code hosts count them.
-#[derive(Debug, Clone)]
-pub struct LineIndex {
-    /// Offset of each line's first byte; the first is 0.
-    starts: Vec<u32>,
-    /// Offsets of the bytes that begin no character.
-    continuations: Vec<u32>,
-    length: u32,
-}
-
-impl LineIndex {
-    /// Texts are shorter than 4 GiB, which reading sees to.
-    pub fn new(text: &str) -> Self {
-        let bytes = text.as_bytes();
-        let mut starts = vec![0];
-        for at in memchr::memchr2_iter(b'\n', b'\r', bytes) {
-            if bytes[at] == b'\n' || bytes.get(at + 1) != Some(&b'\n') {
-                starts.push(number(at + 1));
-            }
-        }
-        let continuations = if text.is_ascii() {
-            Vec::new()
-        } else {
-            bytes.iter().enumerate().filter(|it| it.1 & 0xC0 == 0x80).map(|it| number(it.0)).collect()
-        };
-        Self { starts, continuations, length: number(bytes.len()) }
-    }
-
-    /// Line and column of a byte offset; one past the end is held to the end.
-    pub fn line_col(&self, offset: TextSize) -> LineCol {
-        let offset = u32::from(offset).min(self.length);
-        let line = self.starts.partition_point(|&it| it <= offset).saturating_sub(1);
-        let start = self.starts.get(line).copied().unwrap_or(0);
-        let before = |it: u32| number(self.continuations.partition_point(|&at| at < it));
-        let column = (offset - start) - (before(offset) - before(start));
-        LineCol { line: number(line + 1), column: column + 1 }
-    }
-
-    /// Byte ranges of the lines, their ends included. There is always one at least.
-    pub fn lines(&self) -> impl Iterator<Item = Range<usize>> {
-        let ends = self.starts.iter().skip(1).copied().chain([self.length]);
-        self.starts.iter().copied().zip(ends).map(|(start, end)| start as usize..end as usize)
-    }
-}
+pub use crate::source::line_index::{LineCol, LineIndex};
 
 fn number(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
@@ -123,32 +71,6 @@ pub fn clamp(text: &str, range: TextRange) -> TextRange {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn line_col(text: &str, offset: usize) -> (u32, u32) {
-        let it = LineIndex::new(text).line_col(TextSize::new(offset as u32));
-        (it.line, it.column)
-    }
-
-    #[test]
-    fn columns_count_characters() {
-        let text = "U E 0.0 // Größe\r\n= A 4.0\rx\n\ty";
-        assert_eq!(line_col(text, 0), (1, 1));
-        assert_eq!(line_col(text, text.find("ße").unwrap()), (1, 15));
-        assert_eq!(line_col(text, text.find('=').unwrap()), (2, 1));
-        assert_eq!(line_col(text, text.find('x').unwrap()), (3, 1));
-        assert_eq!(line_col(text, text.find('y').unwrap()), (4, 2));
-        assert_eq!(line_col(text, 10_000), (4, 3));
-        assert_eq!(line_col("", 0), (1, 1));
-        assert_eq!(line_col("a\n", 2), (2, 1));
-    }
-
-    #[test]
-    fn lines_cover_the_text() {
-        for text in ["", "a", "a\n", "a\r\nb\rc\n\n", "\r\n\r\n"] {
-            let joined: String = LineIndex::new(text).lines().map(|it| &text[it]).collect();
-            assert_eq!(joined, text);
-        }
-    }
 
     #[test]
     fn a_person_counts_fewer_lines() {

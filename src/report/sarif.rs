@@ -16,7 +16,7 @@ use serde_sarif::sarif::{
 };
 
 use super::fingerprint::{Fingerprints, length};
-use super::position::{Positions, Span};
+use super::position::{Positions, Span, clamp};
 use super::{Options, citation};
 use crate::lint::{self, Applicability, Diagnostic, Outcome, Rule, Severity, UnreadReason};
 
@@ -25,6 +25,8 @@ const SCHEMA: &str = "https://json.schemastore.org/sarif-2.1.0.json";
 const ROOT: &str = "%SRCROOT%";
 /// Longest description that code scanning takes.
 const DESCRIPTION_LIMIT: usize = 1024;
+/// Longest place that is quoted, in bytes.
+const SNIPPET_LIMIT: usize = 400;
 /// Most places of one finding that code scanning takes.
 const RELATED_LIMIT: usize = 1000;
 
@@ -83,12 +85,9 @@ fn rules(outcome: &Outcome) -> Vec<&'static Rule> {
     by_code.into_values().collect()
 }
 
+/// The project's page, when its manifest names one.
 fn home() -> Option<&'static str> {
-    let page = match env!("CARGO_PKG_HOMEPAGE") {
-        "" => env!("CARGO_PKG_REPOSITORY"),
-        page => page,
-    };
-    (!page.is_empty()).then_some(page)
+    option_env!("CARGO_PKG_REPOSITORY").filter(|it| !it.is_empty())
 }
 
 fn level(severity: Severity) -> ResultLevel {
@@ -126,7 +125,7 @@ fn descriptor(rule: &'static Rule) -> ReportingDescriptor {
     if !sources.is_empty() {
         help = format!("{help}\n\nSource: {}.", sources.join("; "));
     }
-    let markdown = format!("# {} {}\n\n{summary}\n\n{}", rule.code, rule.name, rule.page);
+    let markdown = format!("# {} {}\n\n{summary}\n\n{}", rule.code, rule.name, rule.body());
     let severity = match rule.severity {
         Severity::Error => "error",
         Severity::Warning => "warning",
@@ -166,18 +165,38 @@ const UNSUPPORTED: &str = "unsupported-file";
 const INTERNAL: &str = "internal-error";
 
 fn notification_kinds() -> Vec<ReportingDescriptor> {
-    let kind = |id: &str, level: &str, text: &str| {
+    let kind = |id: &str, name: &str, level: &str, text: &str, help: &str| {
         ReportingDescriptor::builder()
             .id(id)
+            .name(name)
             .short_description(multiformat(text))
             .full_description(multiformat(text))
+            .help(multiformat(help))
             .default_configuration(ReportingConfiguration::builder().level(json!(level)).build())
             .build()
     };
     vec![
-        kind(UNREADABLE, "warning", "The operating system did not let the program read a file."),
-        kind(UNSUPPORTED, "note", "A PLC file is of a kind that the program does not read."),
-        kind(INTERNAL, "error", "A rule failed; the run went on without it."),
+        kind(
+            UNREADABLE,
+            "UnreadableFile",
+            "warning",
+            "The operating system did not let the program read a file.",
+            "Let the user who runs the program read the file, or exclude it in plclint.toml.",
+        ),
+        kind(
+            UNSUPPORTED,
+            "UnsupportedFile",
+            "note",
+            "A PLC file is of a kind that the program does not read.",
+            "Export the program in a form that is read, or exclude the file in plclint.toml.",
+        ),
+        kind(
+            INTERNAL,
+            "InternalError",
+            "error",
+            "A rule failed; the run went on without it.",
+            "Report the failure with the file that was checked.",
+        ),
     ]
 }
 
@@ -271,7 +290,13 @@ impl Cx<'_> {
 
     fn physical(&self, place: &lint::Location) -> Option<PhysicalLocation> {
         let span = self.positions.span(place.file, place.range)?;
-        Some(PhysicalLocation::builder().artifact_location(self.file(place.file)?).region(region(span)).build())
+        let text = &self.positions.file(place.file)?.text;
+        let mut region = region(span);
+        let snippet = text.get(std::ops::Range::<usize>::from(clamp(text, place.range))).unwrap_or_default();
+        if !snippet.is_empty() && snippet.len() <= SNIPPET_LIMIT {
+            region.snippet = Some(ArtifactContent::builder().text(snippet).build());
+        }
+        Some(PhysicalLocation::builder().artifact_location(self.file(place.file)?).region(region).build())
     }
 
     fn result(&mut self, diagnostic: &Diagnostic) -> Option<SarifResult> {

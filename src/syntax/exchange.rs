@@ -1,8 +1,373 @@
-//! The blocks around the program in a PL7 exchange file.
+//! The blocks around the program in a PL7 exchange file, and files of variables.
+//!
+//! A block begins with its name in brackets and holds `KEY = value` pairs; what else it holds is kept as tokens, without
+//! complaint, because the vendor has published no more than a part of the format. Declarations of variables are read.
 
-use super::{Parse, Parser, Token};
+use SyntaxKind::{
+    BlockMark, CharString, Colon, Comment, Eq, ExchangeBlock, Ident, InitValue, KeyValue, ObjectAddress, ObjectRef,
+    Semicolon, TypeRef, VarDecl, VarName, VarSection,
+};
+use logos::{Lexer, Logos};
+use rowan::ast::{AstChildren, AstNode, support};
 
+use super::{Parse, Parser, Plc, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken, Token};
+
+#[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
+enum Lexeme {
+    #[regex(r"[ \t\x0B\x0C\u{A0}\u{FEFF}]+")]
+    Whitespace,
+    #[regex(r"\r\n|\n|\r")]
+    Newline,
+    #[token("(*", comment)]
+    Comment,
+    UnclosedComment,
+    #[regex(r"\[[A-Za-z][A-Za-z0-9_ ]*\]")]
+    BlockMark,
+    // Also `MAST`, `16#FF`, `date#2024-03-01`, `V4.0` and whatever else a value is made of.
+    #[regex(r"[A-Za-z_\u{AA}-\u{2AF}\u{370}-\u{52F}][A-Za-z0-9_\u{AA}-\u{52F}]*")]
+    Ident,
+    #[regex(r"[0-9][0-9_]*(\.[0-9]+)?")]
+    Number,
+    #[regex(r"[A-Za-z0-9_]+#[0-9A-Za-z_.:\-]+")]
+    TypedConstant,
+    #[regex(r"'[^'\r\n]*'?")]
+    CharString,
+    #[regex(r"%[A-Za-z][A-Za-z0-9]*(\{[0-9.]*\}[A-Za-z0-9]*)?([.\\][A-Za-z0-9]+)*(:[Xx]?[0-9]+)?")]
+    ObjectAddress,
+    #[token(":=")]
+    Assign,
+    #[token("=")]
+    Eq,
+    #[token(":")]
+    Colon,
+    #[token(";")]
+    Semicolon,
+    #[token(",")]
+    Comma,
+    #[token(".")]
+    Dot,
+}
+
+impl From<Lexeme> for SyntaxKind {
+    fn from(lexeme: Lexeme) -> Self {
+        match lexeme {
+            Lexeme::Whitespace => Self::Whitespace,
+            Lexeme::Newline => Self::Newline,
+            Lexeme::Comment => Comment,
+            Lexeme::UnclosedComment => Self::UnclosedComment,
+            Lexeme::BlockMark => BlockMark,
+            Lexeme::Ident => Ident,
+            Lexeme::Number => Self::Number,
+            Lexeme::TypedConstant => Self::TypedConstant,
+            Lexeme::CharString => CharString,
+            Lexeme::ObjectAddress => ObjectAddress,
+            Lexeme::Assign => Self::Assign,
+            Lexeme::Eq => Eq,
+            Lexeme::Colon => Colon,
+            Lexeme::Semicolon => Semicolon,
+            Lexeme::Comma => Self::Comma,
+            Lexeme::Dot => Self::Dot,
+        }
+    }
+}
+
+fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
+    let rest = lexer.remainder();
+    match memchr::memmem::find(rest.as_bytes(), b"*)") {
+        Some(inner) => {
+            lexer.bump(inner + 2);
+            Lexeme::Comment
+        }
+        None => {
+            lexer.bump(rest.len());
+            Lexeme::UnclosedComment
+        }
+    }
+}
+
+/// Length of a value whose closing quote is missing: up to the next `KEY =` of the line.
+fn unclosed_length(text: &str) -> usize {
+    let Some(eq) = text.find('=') else { return text.len() };
+    let key = text[..eq].trim_end();
+    let before = key.trim_end_matches(|it: char| it.is_ascii_alphanumeric() || it == '_');
+    let value = before.trim_end();
+    if before.len() < key.len() && value.len() < before.len() && value.len() > 1 { value.len() } else { text.len() }
+}
+
+fn lex(text: &str) -> Vec<Token> {
+    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4 + 1);
+    let mut push = |kind: SyntaxKind, len: usize| {
+        // Units are below 4 GiB: the source layer reads no larger file.
+        let len = u32::try_from(len).unwrap_or(u32::MAX);
+        match tokens.last_mut() {
+            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
+            _ => tokens.push(Token { kind, len }),
+        }
+    };
+    let mut offset = 0;
+    // A value without closing quote is cut back, after which the lexer goes on inside its token.
+    while offset < text.len() {
+        let mut lexer = Lexeme::lexer(&text[offset..]);
+        let start = offset;
+        while let Some(lexeme) = lexer.next() {
+            let slice = lexer.slice();
+            offset = start + lexer.span().end;
+            let is_open = lexeme == Ok(Lexeme::CharString) && (slice.len() < 2 || !slice.ends_with('\''));
+            let len = if is_open { unclosed_length(slice) } else { slice.len() };
+            push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), len);
+            if len < slice.len() {
+                offset -= slice.len() - len;
+                break;
+            }
+        }
+    }
+    tokens
+}
+
+/// Parses the text around programs. Total and linear for every text; nothing in it is an error.
 pub fn parse(text: &str) -> Parse {
-    let tokens: &[Token] = &[];
-    Parser::new(text, tokens).finish()
+    let tokens = lex(text);
+    let mut p = Parser::new(text, &tokens);
+    while !p.at_end() {
+        if p.at(BlockMark) {
+            let m = p.start();
+            p.bump();
+            while !p.at_end() && !p.at(BlockMark) {
+                item(&mut p);
+            }
+            p.complete(m, ExchangeBlock);
+        } else {
+            item(&mut p);
+        }
+    }
+    p.finish()
+}
+
+fn item(p: &mut Parser<'_>) {
+    if p.at(Ident) && p.nth(1) == Some(Eq) {
+        key_value(p);
+    } else if p.at(Ident) && p.current_text().get(..3).is_some_and(|it| it.eq_ignore_ascii_case("VAR")) {
+        var_section(p);
+    } else if at_declaration(p) {
+        declaration(p);
+    } else {
+        p.bump();
+    }
+}
+
+/// `NAME = 'MAST_SR1'`: the value goes to the end of its line or the next key.
+fn key_value(p: &mut Parser<'_>) {
+    let m = p.start();
+    p.bump();
+    p.bump();
+    while !(p.newline_before() || p.at(BlockMark) || (p.at(Ident) && p.nth(1) == Some(Eq))) {
+        p.bump();
+    }
+    p.complete(m, KeyValue);
+}
+
+/// `VAR_GLOBAL ... END_VAR`.
+fn var_section(p: &mut Parser<'_>) {
+    let m = p.start();
+    p.bump();
+    while !p.at_end() && !p.at(BlockMark) {
+        if p.at_text("END_VAR") {
+            p.bump();
+            break;
+        }
+        if at_declaration(p) {
+            declaration(p);
+        } else {
+            p.bump();
+        }
+    }
+    p.complete(m, VarSection);
+}
+
+/// `Pump AT %M0 : EBOOL`, and an instance of a DFB, which has no address: `Cpt_vis : Cpt_pieces`.
+fn at_declaration(p: &Parser<'_>) -> bool {
+    p.at(Ident)
+        && (p.nth(1) == Some(Colon)
+            || (p.nth(1) == Some(Ident) && p.nth_text(1).eq_ignore_ascii_case("AT") && p.nth(2) == Some(ObjectAddress)))
+}
+
+fn declaration(p: &mut Parser<'_>) {
+    let m = p.start();
+    wrap(p, VarName);
+    if p.at(Ident) {
+        p.bump();
+        wrap(p, ObjectRef);
+    }
+    if p.eat(Colon) && p.at(Ident) && !at_declaration(p) {
+        let kind = p.start();
+        p.bump();
+        while !at_end_of_declaration(p) && !p.at(SyntaxKind::Assign) {
+            p.bump();
+        }
+        p.complete(kind, TypeRef);
+    }
+    if p.at(SyntaxKind::Assign) {
+        p.bump();
+        let value = p.start();
+        while !at_end_of_declaration(p) {
+            p.bump();
+        }
+        p.complete(value, InitValue);
+    }
+    p.eat(Semicolon);
+    p.complete(m, VarDecl);
+}
+
+fn at_end_of_declaration(p: &Parser<'_>) -> bool {
+    p.at_end() || p.at(Semicolon) || p.at(BlockMark) || p.at_text("END_VAR") || at_declaration(p)
+}
+
+fn wrap(p: &mut Parser<'_>, kind: SyntaxKind) {
+    let m = p.start();
+    p.bump();
+    p.complete(m, kind);
+}
+
+/// `[SOURCE_UNIT]` and what belongs to it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Block {
+    syntax: SyntaxNode,
+}
+
+impl AstNode for Block {
+    type Language = Plc;
+
+    fn can_cast(kind: SyntaxKind) -> bool {
+        kind == ExchangeBlock
+    }
+
+    fn cast(syntax: SyntaxNode) -> Option<Self> {
+        Self::can_cast(syntax.kind()).then_some(Self { syntax })
+    }
+
+    fn syntax(&self) -> &SyntaxNode {
+        &self.syntax
+    }
+}
+
+impl Block {
+    /// The blocks of a unit, in order.
+    pub fn all(root: &SyntaxNode) -> AstChildren<Self> {
+        support::children(root)
+    }
+
+    /// `[SOURCE_UNIT]`, brackets included.
+    pub fn mark(&self) -> Option<SyntaxToken> {
+        support::token(&self.syntax, BlockMark)
+    }
+
+    /// Whether the block has that name, written without brackets and in any case.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.mark().is_some_and(|it| it.text().trim_matches(['[', ']']).trim().eq_ignore_ascii_case(name))
+    }
+
+    pub fn value(&self, key: &str) -> Option<String> {
+        value(&self.syntax, key)
+    }
+}
+
+/// Value of the first `key` among the children of a block or a root, in any case: the text behind the `=` without
+/// quotes, comments and blanks around it. `None` if the key is not there, empty if it has no value.
+pub fn value(parent: &SyntaxNode, key: &str) -> Option<String> {
+    let is_key = |it: &SyntaxNode| {
+        it.kind() == KeyValue && support::token::<Plc>(it, Ident).is_some_and(|it| it.text().eq_ignore_ascii_case(key))
+    };
+    let pair = parent.children().find(is_key)?;
+    let mut text = String::new();
+    for element in pair.children_with_tokens().skip_while(|it| it.kind() != Eq).skip(1) {
+        match element {
+            SyntaxElement::Token(it) if it.kind() == Comment => {}
+            SyntaxElement::Token(it) => text.push_str(it.text()),
+            SyntaxElement::Node(_) => {}
+        }
+    }
+    let trimmed = text.trim();
+    let inner = trimmed.strip_prefix('\'').map_or(trimmed, |it| it.strip_suffix('\'').unwrap_or(it));
+    Some(inner.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const MODULE: &str = "[HEADER]\nDATE = date#2024-03-01\nSTANDARD = 'IEC'   SENDER = 'x'\n[APPLICATION]\n\
+        NAME = 'Peinture\nVERSION='1.0'\n[VENDOR]\n{any} 12 ; content\n[SOURCE_UNIT]\nSU_TYPE = PROG NAME = 'MAST_SR1 \
+        LANGUAGE = IL BODY =\n  ADDRESS = MAST SR1\nPROGRAM MAST'SR1'\n";
+
+    #[test]
+    fn keys_and_values() {
+        let parse = parse(MODULE);
+        assert_eq!(parse.errors(), []);
+        let blocks: Vec<_> = Block::all(&parse.syntax()).collect();
+        assert_eq!(blocks.len(), 4);
+        let [header, application, vendor, unit] = &blocks[..] else { panic!("four blocks") };
+        assert!(header.is_called("header") && unit.is_called("SOURCE_UNIT"));
+        assert_eq!(header.value("DATE").as_deref(), Some("date#2024-03-01"));
+        assert_eq!(header.value("standard").as_deref(), Some("IEC"));
+        assert_eq!(header.value("SENDER").as_deref(), Some("x"));
+        assert_eq!(application.value("NAME").as_deref(), Some("Peinture"));
+        assert_eq!(application.value("VERSION").as_deref(), Some("1.0"));
+        assert_eq!(vendor.value("content"), None);
+        assert_eq!(unit.value("SU_TYPE").as_deref(), Some("PROG"));
+        assert_eq!(unit.value("NAME").as_deref(), Some("MAST_SR1"));
+        assert_eq!(unit.value("LANGUAGE").as_deref(), Some("IL"));
+        assert_eq!(unit.value("BODY").as_deref(), Some(""));
+        assert_eq!(unit.value("ADDRESS").as_deref(), Some("MAST SR1"));
+        assert_eq!(unit.value("PROG_LANGAGE"), None);
+    }
+
+    #[test]
+    fn variables() {
+        let text = "[DATA_UNIT]\nVAR_GLOBAL\nPump AT %M0 : EBOOL (*a (b) *); Cpt_vis : Cpt_pieces;\n\
+            Lim AT %KW3 : WORD := 16#FF;\nEND_VAR\n[EOF]\n";
+        let root = parse(text).syntax();
+        let declarations: Vec<_> = root.descendants().filter(|it| it.kind() == VarDecl).collect();
+        let parts = |at: usize| {
+            let texts = declarations[at].children().map(|it| (it.kind(), it.text().to_string()));
+            texts.collect::<Vec<_>>()
+        };
+        assert_eq!(declarations.len(), 3);
+        assert_eq!(parts(0), [(VarName, "Pump".into()), (ObjectRef, "%M0".into()), (TypeRef, "EBOOL".into())]);
+        assert_eq!(parts(1), [(VarName, "Cpt_vis".into()), (TypeRef, "Cpt_pieces".into())]);
+        assert_eq!(parts(2)[2..], [(TypeRef, "WORD".into()), (InitValue, "16#FF".into())]);
+        assert_eq!(Block::all(&root).count(), 2);
+    }
+
+    #[test]
+    fn linear_on_hostile_input() {
+        for text in [
+            "'a B=".repeat(400_000),
+            "'".repeat(1_000_000),
+            "A=".repeat(500_000),
+            "[".repeat(1_000_000),
+            "(*".repeat(500_000),
+            "VAR a:".repeat(200_000),
+            "\0".repeat(1_000_000),
+        ] {
+            assert_eq!(parse(&text).syntax().text(), text.as_str());
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn tree_is_the_text(text in "\\PC*") {
+            let parse = parse(&text);
+            prop_assert_eq!(parse.syntax().text(), text.as_str());
+        }
+
+        #[test]
+        fn cut_and_mutated_text_is_kept(from in 0..400_usize, to in 0..400_usize, junk in "['=\\[\\]a (*;:]{0,4}") {
+            let (from, to) = (from.min(MODULE.len()), to.min(MODULE.len()));
+            let text = format!("{}{junk}{}", &MODULE[..from], &MODULE[to..]);
+            let parse = parse(&text);
+            prop_assert_eq!(parse.syntax().text(), text.as_str());
+            prop_assert_eq!(parse.errors(), &[]);
+        }
+    }
 }

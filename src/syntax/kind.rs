@@ -128,6 +128,8 @@ kinds! {
     Arg,
 
     // PL7 nodes.
+    /// `ST : MAST - SR10`: the line that names what a listing belongs to.
+    Heading,
     Sentence,
     LabelDef,
     IlInstr,

@@ -312,6 +312,12 @@ impl Builder {
         self.path != Exprs::FALSE
     }
 
+    /// Notes an instruction without effect (`NOP 0`, the `BE` that closes a block): nothing is lost when no path
+    /// reaches it.
+    pub(super) fn idle_instruction(&mut self) {
+        self.model.instructions += 1;
+    }
+
     /// Notes an instruction or statement, which is unreachable when the path is FALSE.
     pub(super) fn instruction(&mut self, range: TextRange) {
         self.model.instructions += 1;
@@ -384,11 +390,11 @@ impl Builder {
         }
     }
 
-    /// The condition at a place where values from several paths meet.
-    pub(super) fn enter(&mut self, path: ExprId, cause: DeadCause, range: TextRange) {
-        let was = std::mem::replace(&mut self.path, path);
-        if path == Exprs::FALSE && was != Exprs::FALSE {
-            self.cut = Some((cause, range));
+    /// Control is here under that condition. `cut`: what to blame when it is never true.
+    pub(super) fn enter(&mut self, path: ExprId, cut: Option<(DeadCause, TextRange)>) {
+        self.path = path;
+        if path == Exprs::FALSE && cut.is_some() {
+            self.cut = cut;
         }
     }
 
@@ -412,6 +418,13 @@ impl Builder {
     /// The innermost loop has a way out besides its condition.
     pub(super) fn mark_exit(&mut self) {
         if let Some(&id) = self.loops.last() {
+            self.model.loops[id as usize].exits = true;
+        }
+    }
+
+    /// A jump or return leaves every loop that is open here.
+    pub(super) fn mark_all_exits(&mut self) {
+        for &id in &self.loops {
             self.model.loops[id as usize].exits = true;
         }
     }

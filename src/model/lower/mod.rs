@@ -2,6 +2,9 @@
 
 mod awl;
 mod builder;
+mod il;
+mod pl7;
+mod st;
 
 use rowan::TextRange;
 
@@ -14,8 +17,8 @@ use crate::syntax::{Language, SyntaxNode};
 pub fn lower(root: &SyntaxNode, entity: Entity, language: Language) -> UnitModel {
     match language {
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
-        Language::Pl7Il | Language::Pl7St | Language::Exchange => {
-            builder::Builder::new(entity, language, TextRange::default()).finish()
-        }
+        Language::Pl7Il => il::lower(root, entity),
+        Language::Pl7St => st::lower(root, entity),
+        Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
     }
 }

@@ -94,13 +94,15 @@ enum Keyword {
 
 impl Keyword {
     fn of(word: &str) -> Option<Self> {
-        const WORDS: [(&str, Keyword); 27] = [
+        const WORDS: [(&str, Keyword); 29] = [
             ("BEGIN", Keyword::Begin),
             ("NETWORK", Keyword::Network),
             // As the editor prints a block, in its own language.
             ("NETZWERK", Keyword::PrintedNetwork),
             ("RÉSEAU", Keyword::PrintedNetwork),
             ("RéSEAU", Keyword::PrintedNetwork),
+            ("SEGMENT", Keyword::PrintedNetwork),
+            ("SEGMENTO", Keyword::PrintedNetwork),
             ("TITLE", Keyword::Title),
             ("VAR", Keyword::Var),
             ("VAR_INPUT", Keyword::Var),
@@ -175,7 +177,10 @@ impl Grammar<'_, '_> {
 
     /// Reports and skips a statement by its first token.
     fn bad_statement(&mut self, message: impl Into<String>) {
-        self.p.error(message);
+        match self.p.current() {
+            Some(Unknown) => self.p.error(unknown_token(self.p.current_text())),
+            _ => self.p.error(message),
+        }
         let error = self.p.start();
         self.p.bump();
         while !self.at_statement_end() {
@@ -219,7 +224,7 @@ impl Grammar<'_, '_> {
             (Keyword::PrintedNetwork, _) => None,
             (Keyword::Property, Some(Colon)) => Some(keyword),
             // A declaration, label or assignment of that name.
-            (_, Some(Colon | Assign | Dot | LBrack)) => None,
+            (_, Some(Colon | Assign | Dot | LBrack)) if !self.p.nth_newline_before(1) => None,
             _ => Some(keyword),
         }
     }
@@ -259,7 +264,7 @@ impl Grammar<'_, '_> {
                     self.p.bump();
                     in_body = true;
                 }
-                _ if in_body && kind.has_code() => self.network(),
+                _ if in_body && kind.has_code() => self.network(false),
                 _ if in_body => self.data_init(),
                 Some(Keyword::Title) => self.title_line(),
                 Some(Keyword::Property) => self.block_property(),
@@ -267,7 +272,7 @@ impl Grammar<'_, '_> {
                 Some(Keyword::Var | Keyword::Struct) => self.var_section(),
                 Some(Keyword::Network) if kind.has_code() => {
                     in_body = true;
-                    self.network();
+                    self.network(false);
                 }
                 _ => in_body |= self.block_item(kind),
             }
@@ -298,13 +303,18 @@ impl Grammar<'_, '_> {
                 self.array_type();
                 self.p.eat(Semicolon);
             }
-            Some(Ident | Address | QuotedSymbol) if kind == BlockKind::Data => {
+            Some(Ident | Address | QuotedSymbol)
+                if kind == BlockKind::Data && self.keyword().is_none() && self.p.nth(1) != Some(Colon) =>
+            {
                 self.type_ref();
-                self.end_statement("type of the data block");
+                // `BEGIN` may follow on the same line.
+                if self.keyword().is_none() {
+                    self.end_statement("type of the data block");
+                }
             }
             Some(_) if kind.has_code() && (self.op_here().is_some() || self.at_label()) => {
                 self.p.error("expected `BEGIN` before the code of the block");
-                self.network();
+                self.network(false);
                 return true;
             }
             _ => self.bad_statement("expected a declaration or `BEGIN`"),
@@ -314,11 +324,11 @@ impl Grammar<'_, '_> {
 
     fn block_name(&mut self) {
         let name = self.p.start();
-        let is_word = self.p.at(Ident);
-        if is_word || self.p.at(Address) || self.p.at(QuotedSymbol) {
+        let numbered = self.p.at(Ident) && super::lexer::is_area(self.p.current_text().as_bytes());
+        if matches!(self.p.current(), Some(Ident | Address | QuotedSymbol)) {
             self.p.bump();
         }
-        if is_word && self.p.at(Number) && !self.p.newline_before() {
+        if numbered && self.p.at(Number) && !self.p.newline_before() {
             self.p.bump();
         }
         self.p.complete(name, BlockName);
@@ -458,18 +468,20 @@ impl Grammar<'_, '_> {
     /// A type that is nested too deep: over its structures without recursion.
     fn skip_type(&mut self) {
         let error = self.p.start();
-        let mut open = 0_usize;
+        // Structures that are open; the keyword of one stands behind a colon or `OF`, or starts its line.
+        let mut open = usize::from(self.p.at_text("STRUCT"));
+        self.p.bump();
         while !self.p.at_end() {
             match self.keyword() {
-                Some(Keyword::EndStruct) if open <= 1 => {
+                Some(Keyword::EndVar | Keyword::Begin | Keyword::EndBlock(_)) => break,
+                Some(Keyword::EndStruct) if open == 0 => break,
+                Some(Keyword::EndStruct) if open == 1 => {
                     self.p.bump();
                     break;
                 }
                 Some(Keyword::EndStruct) => open -= 1,
-                Some(Keyword::EndVar | Keyword::Begin | Keyword::EndBlock(_)) => break,
-                // The keyword of a structure stands behind the colon of its declaration, too.
                 _ if self.p.at(Ident) && self.p.at_text("STRUCT") => open += 1,
-                _ if open == 0 && self.p.at(Semicolon) => break,
+                _ if open == 0 && self.at_statement_end() => break,
                 _ => {}
             }
             self.p.bump();
@@ -537,8 +549,9 @@ impl Grammar<'_, '_> {
         }
         let type_ref = self.p.start();
         let is_word = self.p.at(Ident);
+        let numbered = is_word && super::lexer::is_area(self.p.current_text().as_bytes());
         self.p.bump();
-        if is_word && self.p.at(Number) && !self.p.newline_before() {
+        if numbered && self.p.at(Number) && !self.p.newline_before() {
             self.p.bump();
         }
         let mut read = true;
@@ -656,7 +669,7 @@ impl Grammar<'_, '_> {
                 Some(Keyword::EndBlock(kind)) => {
                     self.bad_statement(format!("`END_{0}` without `{0}`", kind.keyword()));
                 }
-                _ => self.network(),
+                _ => self.network(true),
             }
         }
         self.p.complete(listing, Listing);
@@ -673,7 +686,7 @@ impl Grammar<'_, '_> {
     }
 
     /// One network; consumes a token at least, unless the block or listing ends here.
-    fn network(&mut self) {
+    fn network(&mut self, in_listing: bool) {
         let network = self.p.start();
         match self.keyword() {
             Some(Keyword::Network) => {
@@ -722,11 +735,10 @@ impl Grammar<'_, '_> {
                         | Keyword::Flag
                         | Keyword::PrintedNetwork,
                     ) => self.bad_statement(format!("`{}` is not allowed in code", self.p.current_text())),
-                    None if self.at_listing_header() => break,
+                    None if in_listing && self.at_listing_header() => break,
                     None => self.instr(),
                 },
                 Operator | Eq | Plus | RParen => self.instr(),
-                Unknown => self.bad_statement(unknown_token(self.p.current_text())),
                 _ => self.bad_statement("expected an instruction"),
             }
         }
@@ -802,6 +814,7 @@ impl Grammar<'_, '_> {
             }
             OperandRule::Optional(_) if self.at_statement_end() => Read::Done,
             OperandRule::Optional(kind) | OperandRule::Required(kind) => {
+                let symbolic = self.p.at(QuotedSymbol);
                 let read = if self.at_statement_end() { Read::Absent } else { self.operand() };
                 if read == Read::Absent {
                     self.missing(format!("`{word}` needs {} as its operand", kind.describe()));
@@ -809,6 +822,10 @@ impl Grammar<'_, '_> {
                 } else if read == Read::Done && op == Op::Call {
                     self.call_tail()
                 } else {
+                    // A listing printed with symbol information: `U "start"   E 0.0  -- start button`.
+                    if symbolic && self.p.at(Address) && !self.p.newline_before() {
+                        self.p.bump();
+                    }
                     read
                 }
             }

@@ -18,6 +18,8 @@ enum Lexeme {
     #[regex(r"\r\n|\n|\r")]
     Newline,
     #[regex(r"//[^\r\n]*", allow_greedy = true)]
+    // The symbol comment of a listing printed with symbol information.
+    #[regex(r"--[^\r\n]*", allow_greedy = true)]
     LineComment,
     #[token("(*", block_comment)]
     BlockComment(bool),
@@ -53,6 +55,8 @@ enum Lexeme {
     #[token("NETWORK", priority = 20, ignore(case))]
     #[token("NETZWERK", priority = 20, ignore(case))]
     #[token("RÉSEAU", priority = 20, ignore(case))]
+    #[token("SEGMENT", priority = 20, ignore(case))]
+    #[token("SEGMENTO", priority = 20, ignore(case))]
     Network,
 
     #[regex(r"[0-9][0-9_]*(\.[0-9][0-9_]*)?([eE][+-]?[0-9]+|[ \t]+[eE][+-][0-9]+)?")]
@@ -211,7 +215,7 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
             },
             Ok(Lexeme::Title) => {
                 out.push(SyntaxKind::Ident, lexer.slice().len());
-                out.free_text(&mut lexer, b'=', text_end);
+                out.free_text(&mut lexer, b'=', line_end);
                 at_start = false;
                 continue;
             }
@@ -229,7 +233,7 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
                     out.push(SyntaxKind::Whitespace, numbered);
                     out.push(SyntaxKind::Number, digits);
                     lexer.bump(numbered + digits);
-                    out.free_text(&mut lexer, b':', text_end);
+                    out.free_text(&mut lexer, b':', line_end);
                 }
                 in_header = false;
                 at_start = true;
@@ -352,7 +356,7 @@ impl Output {
     }
 
     /// After a keyword: if `separator` follows on the line, the separator and the text after it.
-    fn free_text(&mut self, lexer: &mut logos::Lexer<'_, Lexeme>, separator: u8, end: fn(&str) -> usize) {
+    fn free_text(&mut self, lexer: &mut logos::Lexer<'_, Lexeme>, separator: u8, end: fn(&[u8]) -> usize) {
         let rest = lexer.remainder();
         let bytes = rest.as_bytes();
         let at = skip_blanks(bytes, 0);
@@ -361,8 +365,7 @@ impl Output {
             return;
         }
         let start = skip_blanks(bytes, at + 1);
-        let line = &rest[start..start + line_end(&bytes[start..])];
-        let text = line[..end(line)].trim_end_matches([' ', '\t']);
+        let text = rest[start..start + end(&bytes[start..])].trim_end_matches([' ', '\t']);
         self.push(SyntaxKind::Whitespace, at);
         self.push(if separator == b':' { SyntaxKind::Colon } else { SyntaxKind::Eq }, 1);
         self.push(SyntaxKind::Whitespace, start - at - 1);
@@ -371,13 +374,9 @@ impl Output {
     }
 }
 
-/// A title is all of its line.
-fn text_end(line: &str) -> usize {
-    line.len()
-}
-
 /// The value of AUTHOR, FAMILY, NAME and VERSION ends before a comment, a `;` and what else a header on one line has.
-fn value_end(line: &str) -> usize {
+/// Reads no further than that: a line can have any number of them.
+fn value_end(bytes: &[u8]) -> usize {
     const KEYS: [&str; 4] = ["AUTHOR", "FAMILY", "NAME", "VERSION"];
     const FLAGS: [&str; 13] = [
         "KNOW_HOW_PROTECT",
@@ -394,21 +393,21 @@ fn value_end(line: &str) -> usize {
         "BEGIN",
         "NETWORK",
     ];
-    let bytes = line.as_bytes();
-    if bytes.first() == Some(&b'\'') {
-        return memchr::memchr(b'\'', &bytes[1..]).map_or(line.len(), |it| it + 2);
+    if let [b'\'', rest @ ..] = bytes {
+        let end = memchr::memchr3(b'\'', b'\n', b'\r', rest).unwrap_or(rest.len());
+        return 1 + end + usize::from(rest.get(end) == Some(&b'\''));
     }
     let mut at = 0;
-    while at < bytes.len() {
-        match bytes[at] {
-            b';' | b'{' => return at,
+    while let Some(byte) = bytes.get(at) {
+        match byte {
+            b'\n' | b'\r' | b';' | b'{' => return at,
             b'/' if bytes.get(at + 1) == Some(&b'/') => return at,
             b' ' | b'\t' => {
                 let start = skip_blanks(bytes, at);
                 let len = bytes[start..].iter().take_while(|it| it.is_ascii_alphanumeric() || **it == b'_').count();
-                let is = |it: &&str| it.as_bytes().eq_ignore_ascii_case(&bytes[start..start + len]);
-                let key = KEYS.iter().any(|it| is(it)) && bytes.get(skip_blanks(bytes, start + len)) == Some(&b':');
-                if key || FLAGS.iter().any(|it| is(it)) {
+                let is_next = |it: &&str| it.as_bytes().eq_ignore_ascii_case(&bytes[start..start + len]);
+                let has_value = bytes.get(skip_blanks(bytes, start + len)) == Some(&b':');
+                if (has_value && KEYS.iter().any(is_next)) || FLAGS.iter().any(is_next) {
                     return at;
                 }
                 at = start + len;
@@ -416,9 +415,10 @@ fn value_end(line: &str) -> usize {
             _ => at += 1,
         }
     }
-    line.len()
+    at
 }
 
+/// A title is all of its line.
 fn line_end(bytes: &[u8]) -> usize {
     memchr::memchr2(b'\n', b'\r', bytes).unwrap_or(bytes.len())
 }
@@ -434,23 +434,23 @@ fn count_digits(bytes: &[u8], from: usize) -> usize {
 
 /// Whether the letters name a memory area, a block kind, timers or counters in either mnemonic set.
 pub(super) fn is_area(word: &[u8]) -> bool {
-    let lower = |at: usize| word[at].to_ascii_lowercase();
-    match word.len() {
-        1 => matches!(lower(0), b'm' | b'e' | b'a' | b'i' | b'q' | b'l' | b't' | b'z' | b'c'),
-        2 => match (lower(0), lower(1)) {
-            (b'm' | b'e' | b'a' | b'i' | b'q' | b'l', b'b' | b'w' | b'd') => true,
-            (b'd', b'b' | b'i') | (b'f', b'b' | b'c') | (b'o', b'b') => true,
-            (b'p', b'e' | b'a' | b'i' | b'q') => true,
-            _ => false,
-        },
-        3 => match (lower(0), lower(1), lower(2)) {
-            (b'd', b'b' | b'i', b'x' | b'b' | b'w' | b'd') => true,
-            (b'p', b'e' | b'a' | b'i' | b'q', b'b' | b'w' | b'd') => true,
-            (b's', b'f', b'b' | b'c') | (b'u', b'd', b't') => true,
-            _ => false,
-        },
-        _ => false,
-    }
+    let mut lower = [0; 3];
+    let Some(lower) = lower.get_mut(..word.len()) else { return false };
+    lower.copy_from_slice(word);
+    lower.make_ascii_lowercase();
+    matches!(
+        lower,
+        [b'm' | b'e' | b'a' | b'i' | b'q' | b'l' | b't' | b'z' | b'c']
+            | [b'm' | b'e' | b'a' | b'i' | b'q' | b'l', b'b' | b'w' | b'd']
+            | [b'd', b'b' | b'i']
+            | [b'f', b'b' | b'c']
+            | [b'o', b'b']
+            | [b'p', b'e' | b'a' | b'i' | b'q']
+            | [b'p', b'e' | b'a' | b'i' | b'q', b'b' | b'w' | b'd']
+            | [b'd', b'b' | b'i', b'x' | b'b' | b'w' | b'd']
+            | [b's', b'f', b'b' | b'c']
+            | [b'u', b'd', b't']
+    )
 }
 
 /// How many bytes of `rest` complete `word` to an absolute operand; `None` if it is none.

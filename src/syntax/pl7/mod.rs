@@ -1,12 +1,30 @@
 //! PL7 instruction list and structured text, in the exchange form and as pasted in documents.
+//!
+//! One lexer, one expression grammar and one frame of sentences serve both languages. The tree is
+//! `Root > Sentence > (LabelDef | IlInstr | statement)*`; [`ast`] gives it types.
 
-use super::{Parse, Parser, Token};
+pub mod ast;
+mod expr;
+pub mod functions;
+mod grammar;
+mod il;
+pub mod instructions;
+mod lexer;
+mod st;
+mod word;
 
+#[cfg(test)]
+mod tests;
+
+use super::Parse;
+use grammar::Dialect;
+
+/// Parses one unit of instruction list. Total and linear for every text.
 pub fn parse_il(text: &str) -> Parse {
-    let tokens: &[Token] = &[];
-    Parser::new(text, tokens).finish()
+    grammar::parse(text, Dialect::Il)
 }
 
+/// Parses one unit of structured text. Total and linear for every text.
 pub fn parse_st(text: &str) -> Parse {
-    parse_il(text)
+    grammar::parse(text, Dialect::St)
 }

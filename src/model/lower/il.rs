@@ -1,0 +1,590 @@
+//! PL7 instruction list to the model: the Boolean result, parentheses, the MPS stack, structured blocks.
+//!
+//! Each sentence starts with an `LD` or an unconditional instruction (PL7:3319), so that no result passes from one
+//! sentence to another, and none along a jump.
+
+use rowan::TextRange;
+use rowan::ast::AstNode as _;
+use smol_str::SmolStr;
+
+use super::builder::index;
+use super::pl7::{self, Kind, Pl7};
+use crate::model::UnitModel;
+use crate::model::entity::{Entity, Part};
+use crate::model::expr::{ExprId, Exprs, ObjectId};
+use crate::model::object::{self, Class, Type};
+use crate::model::unit::{Leave, Mode, OddityKind, Pin};
+use crate::syntax::pl7::ast::{self, BracketContent, IlOperand};
+use crate::syntax::pl7::instructions::IlOp;
+use crate::syntax::{Language, SyntaxNode};
+use crate::target;
+
+pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
+    // A receptivity is a list of tests alone (PL7:4713-4749).
+    let tests_only = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"));
+    let mut lowering = Lowering {
+        pl7: Pl7::new(root, entity, Language::Pl7Il),
+        tests_only,
+        result: None,
+        test: None,
+        parentheses: Vec::new(),
+        stack: Vec::new(),
+        block: None,
+        deepest: 0,
+    };
+    lowering.pl7.b.set_back_targets(pl7::back_targets(root));
+    if let Some(root) = ast::Root::cast(root.clone()) {
+        for sentence in root.sentences() {
+            lowering.sentence(&sentence);
+        }
+    }
+    lowering.close_block();
+    lowering.pl7.b.finish()
+}
+
+struct Parenthesis {
+    op: IlOp,
+    before: Option<ExprId>,
+    range: TextRange,
+}
+
+/// A `BLK ... OUT_BLK ... END_BLK`.
+struct Block {
+    object: ObjectId,
+    text: SmolStr,
+    range: TextRange,
+    outputs: bool,
+}
+
+struct Lowering {
+    pl7: Pl7,
+    tests_only: bool,
+    /// The Boolean result; `None` where the sentence has not made one yet.
+    result: Option<ExprId>,
+    /// Tests whose result nothing has used yet.
+    test: Option<TextRange>,
+    parentheses: Vec<Parenthesis>,
+    stack: Vec<(ExprId, TextRange)>,
+    block: Option<Block>,
+    deepest: u32,
+}
+
+impl Lowering {
+    fn sentence(&mut self, sentence: &ast::Sentence) {
+        self.pl7.b.next_network();
+        self.result = None;
+        for label in sentence.labels() {
+            self.pl7.label(&label);
+        }
+        for child in sentence.syntax().children() {
+            if let Some(instr) = ast::IlInstr::cast(child.clone()) {
+                self.instruction(&instr);
+            } else if let Some(label) = ast::LabelDef::cast(child)
+                && let Some(open) = self.parentheses.first().map(|it| it.range)
+            {
+                let range = label.syntax().text_range();
+                let text = label.token().map(|it| SmolStr::new(it.text())).unwrap_or_default();
+                let oddity = self.pl7.b.oddity(OddityKind::LabelInParentheses, range, text);
+                oddity.related.push((open, "opened here"));
+            }
+        }
+        self.end_of_sentence();
+    }
+
+    fn end_of_sentence(&mut self) {
+        for it in std::mem::take(&mut self.parentheses) {
+            self.pl7.b.oddity(OddityKind::UnclosedParenthesis, it.range, "(");
+        }
+        if let Some(&(_, range)) = self.stack.last() {
+            let left = index(self.stack.len());
+            self.pl7.b.oddity(OddityKind::StackLeft(left), range, "MPS");
+            self.stack.clear();
+        }
+        // The tests of a block's inputs may stand in several sentences.
+        self.unused_test();
+        self.deepest = 0;
+    }
+
+    fn unused_test(&mut self) {
+        if let Some(range) = self.test.take()
+            && !self.tests_only
+            && self.pl7.b.is_reachable()
+        {
+            self.pl7.b.oddity(OddityKind::TestWithoutAction, range, "");
+        }
+    }
+
+    fn instruction(&mut self, instr: &ast::IlInstr) {
+        let range = instr.syntax().text_range();
+        self.pl7.b.instruction(range);
+        if instr.close_parenthesis().is_some() && instr.mnemonic().is_none() {
+            self.close(range);
+            return;
+        }
+        if instr.is_operation() {
+            self.operation(instr, range);
+            return;
+        }
+        let Some(op) = instr.op() else {
+            // Not understood: it may have made a result, and used one.
+            self.result = Some(self.pl7.b.exprs().opaque());
+            self.test = None;
+            return;
+        };
+        let text = instr.mnemonic().map(|it| SmolStr::new(it.text())).unwrap_or_default();
+        if self.result.is_none() && self.parentheses.is_empty() && !op.info().starts_sequence() && self.block.is_none()
+        {
+            self.pl7.b.oddity(OddityKind::SentenceStart, range, text.clone());
+            self.result = Some(self.pl7.b.exprs().opaque());
+        }
+        match op {
+            IlOp::Ld | IlOp::LdN | IlOp::LdR | IlOp::LdF => {
+                if self.parentheses.is_empty() {
+                    self.unused_test();
+                }
+                let value = self.test_operand(op, instr, range);
+                self.result = Some(value);
+                self.test = Some(range);
+            }
+            IlOp::And
+            | IlOp::AndN
+            | IlOp::AndR
+            | IlOp::AndF
+            | IlOp::Or
+            | IlOp::OrN
+            | IlOp::OrR
+            | IlOp::OrF
+            | IlOp::Xor
+            | IlOp::XorN
+            | IlOp::XorR
+            | IlOp::XorF => self.combine(op, instr, range),
+            IlOp::N => {
+                let result = self.result();
+                let negated = self.pl7.b.exprs().not(result);
+                self.result = Some(negated);
+                self.test = Some(self.test.map_or(range, |it| it.cover(range)));
+            }
+            IlOp::Mps | IlOp::Mrd | IlOp::Mpp => self.stack_instruction(op, range, &text),
+            IlOp::St | IlOp::StN | IlOp::S | IlOp::R => self.store(op, instr, range, &text),
+            IlOp::In | IlOp::Cu | IlOp::Cd | IlOp::I | IlOp::O | IlOp::U => self.drive(op, instr, range, &text),
+            IlOp::Blk => self.open_block(instr, range),
+            IlOp::OutBlk => match &mut self.block {
+                Some(block) => block.outputs = true,
+                None => self.structure(range, &text, "`OUT_BLK` stands without `BLK`"),
+            },
+            IlOp::EndBlk => {
+                if self.block.take().is_none() {
+                    self.structure(range, &text, "`END_BLK` stands without `BLK`");
+                }
+                self.result = None;
+            }
+            IlOp::Jmp => self.jump(Exprs::TRUE, instr, range, &text),
+            IlOp::JmpC | IlOp::JmpCN => {
+                let when = self.used(op == IlOp::JmpCN);
+                self.jump(when, instr, range, &text);
+            }
+            IlOp::Sr => {
+                self.in_parentheses(OddityKind::JumpInParentheses, range, &text);
+                if let Some(number) = instr.subroutine() {
+                    self.pl7.subroutine(number, &text, Exprs::TRUE, range, range);
+                }
+                self.test = None;
+                self.result = Some(self.pl7.b.exprs().opaque());
+            }
+            IlOp::Ret => self.leave(Exprs::TRUE, Leave::Subroutine, range),
+            IlOp::RetC | IlOp::RetCN => {
+                let when = self.used(op == IlOp::RetCN);
+                self.leave(when, Leave::Subroutine, range);
+            }
+            IlOp::End => self.leave(Exprs::TRUE, Leave::Unit, range),
+            IlOp::EndC | IlOp::EndCN => {
+                let when = self.used(op == IlOp::EndCN);
+                self.leave(when, Leave::Unit, range);
+            }
+            IlOp::Halt => {
+                let when = self.result.unwrap_or(Exprs::TRUE);
+                self.test = None;
+                self.pl7.halt(when, range);
+            }
+        }
+    }
+
+    fn result(&mut self) -> ExprId {
+        match self.result {
+            Some(result) => result,
+            None => {
+                let value = self.pl7.b.exprs().opaque();
+                self.result = Some(value);
+                value
+            }
+        }
+    }
+
+    /// The result that an action uses.
+    fn used(&mut self, negated: bool) -> ExprId {
+        self.test = None;
+        let result = self.result();
+        if negated { self.pl7.b.exprs().not(result) } else { result }
+    }
+
+    fn in_parentheses(&mut self, kind: OddityKind, range: TextRange, text: &str) {
+        if let Some(open) = self.parentheses.first().map(|it| it.range) {
+            let oddity = self.pl7.b.oddity(kind, range, text);
+            oddity.related.push((open, "opened here"));
+        }
+    }
+
+    fn structure(&mut self, range: TextRange, text: &str, message: &str) {
+        self.pl7.b.oddity(OddityKind::BlockStructure(message.to_owned()), range, text);
+    }
+
+    // Tests.
+
+    fn test_operand(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange) -> ExprId {
+        let edge = match op {
+            IlOp::LdR | IlOp::AndR | IlOp::OrR | IlOp::XorR => Some(true),
+            IlOp::LdF | IlOp::AndF | IlOp::OrF | IlOp::XorF => Some(false),
+            _ => match instr.modifier().map(|it| it.text().to_ascii_uppercase()).as_deref() {
+                Some("R") => Some(true),
+                Some("F") => Some(false),
+                _ => None,
+            },
+        };
+        let negated = matches!(op, IlOp::LdN | IlOp::AndN | IlOp::OrN | IlOp::XorN)
+            || instr.modifier().is_some_and(|it| it.text().eq_ignore_ascii_case("N"));
+        let value = match instr.operand() {
+            Some(IlOperand::Object(it)) => {
+                let (object, at) = self.pl7.object_ref(&it);
+                self.test_object(object, edge, at, range, op)
+            }
+            Some(IlOperand::Name(it)) => match self.block_output(&it) {
+                Some((object, at)) => self.test_object(object, edge, at, range, op),
+                None => {
+                    let (object, at) = self.pl7.name_ref(&it);
+                    self.test_object(object, edge, at, range, op)
+                }
+            },
+            Some(IlOperand::Literal(it)) => match self.pl7.literal(&it) {
+                (value, Kind::Bit) => value,
+                // `LD 1` is the immediate bit (PL7:577).
+                (value, _) => match self.pl7.b.exprs().get(value) {
+                    crate::model::expr::Expr::Int(0) => Exprs::FALSE,
+                    crate::model::expr::Expr::Int(1) => Exprs::TRUE,
+                    _ => {
+                        let at = it.syntax().text_range();
+                        let message = format!("`{}` takes a bit or a comparison in brackets", op.info().mnemonic);
+                        self.pl7.b.oddity(OddityKind::OperandType(message), at, it.syntax().text().to_string());
+                        self.pl7.b.exprs().opaque()
+                    }
+                },
+            },
+            Some(IlOperand::Bracket(it)) => match it.expr() {
+                Some(expr) => self.pl7.expr(&expr).0,
+                None => self.pl7.b.exprs().opaque(),
+            },
+            Some(IlOperand::Label(_)) | None => self.pl7.b.exprs().opaque(),
+        };
+        if negated { self.pl7.b.exprs().not(value) } else { value }
+    }
+
+    fn test_object(
+        &mut self,
+        object: ObjectId,
+        edge: Option<bool>,
+        at: TextRange,
+        range: TextRange,
+        op: IlOp,
+    ) -> ExprId {
+        if self.pl7.kind(object) == Kind::Number {
+            let data = self.pl7.b.model.object(object);
+            let message = format!("`{}` takes a bit, and `{}` is {}", op.info().mnemonic, data.text, describe(data.ty));
+            let text = data.text.clone();
+            self.pl7.b.oddity(OddityKind::OperandType(message), at, text);
+            return self.pl7.b.exprs().opaque();
+        }
+        let _ = range;
+        match edge {
+            Some(rising) => self.pl7.b.edge(object, rising, at),
+            None => self.pl7.read(object, at),
+        }
+    }
+
+    /// In the output part of a block, `LD D` reads the block's own output.
+    fn block_output(&mut self, it: &ast::NameRef) -> Option<(ObjectId, TextRange)> {
+        let block = self.block.as_ref().filter(|it| it.outputs)?;
+        let name = it.name()?;
+        let address = format!("{}.{}", block.text, name.text());
+        let object = object::pl7::parse(&address).ok()?;
+        Some((self.pl7.b.object(object), name.text_range()))
+    }
+
+    fn combine(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange) {
+        if instr.open_parenthesis().is_some() {
+            let before = self.result;
+            self.parentheses.push(Parenthesis { op, before, range });
+            let depth = index(self.parentheses.len());
+            if depth > target::pl7::PARENTHESIS_DEPTH.value && depth > self.deepest {
+                self.pl7.b.oddity(OddityKind::ParenthesisDepth(depth), range, "(");
+            }
+            self.deepest = self.deepest.max(depth);
+            self.result = instr.operand().map(|_| self.test_operand(op, instr, range));
+        } else {
+            let value = self.test_operand(op, instr, range);
+            let before = self.result();
+            self.result = Some(self.apply(op, before, value));
+        }
+        self.test = Some(self.test.map_or(range, |it| it.cover(range)));
+    }
+
+    fn apply(&mut self, op: IlOp, a: ExprId, b: ExprId) -> ExprId {
+        let exprs = self.pl7.b.exprs();
+        match op {
+            IlOp::Or | IlOp::OrN | IlOp::OrR | IlOp::OrF => exprs.or(a, b),
+            IlOp::Xor | IlOp::XorN | IlOp::XorR | IlOp::XorF => exprs.xor(a, b),
+            _ => exprs.and(a, b),
+        }
+    }
+
+    fn close(&mut self, range: TextRange) {
+        let Some(open) = self.parentheses.pop() else {
+            self.pl7.b.oddity(OddityKind::UnopenedParenthesis, range, ")");
+            return;
+        };
+        let inner = self.result();
+        let before = open.before.unwrap_or_else(|| self.pl7.b.exprs().opaque());
+        // The modifier behind the parenthesis belongs to the first operand, not to the whole.
+        self.result = Some(self.apply(open.op, before, inner));
+        self.test = Some(self.test.map_or(range, |it| it.cover(range)));
+    }
+
+    fn stack_instruction(&mut self, op: IlOp, range: TextRange, text: &str) {
+        if let Some(open) = self.parentheses.first().map(|it| it.range) {
+            let oddity = self.pl7.b.oddity(OddityKind::StackInParentheses, range, text);
+            oddity.related.push((open, "opened here"));
+        }
+        if op == IlOp::Mps {
+            let result = self.result();
+            self.stack.push((result, range));
+            let depth = index(self.stack.len());
+            if depth > target::pl7::STACK_DEPTH.value {
+                self.pl7.b.oddity(OddityKind::StackDepth(depth), range, text);
+            }
+            self.test = None;
+            return;
+        }
+        self.unused_test();
+        let top = if op == IlOp::Mpp { self.stack.pop() } else { self.stack.last().copied() };
+        self.result = Some(match top {
+            Some((value, _)) => value,
+            None => {
+                self.pl7.b.oddity(OddityKind::StackUnderflow, range, text);
+                self.pl7.b.exprs().opaque()
+            }
+        });
+    }
+
+    // Actions.
+
+    fn store(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange, text: &str) {
+        self.in_parentheses(OddityKind::StoreInParentheses, range, text);
+        let place = match instr.operand() {
+            Some(IlOperand::Object(it)) => Some(self.pl7.object_ref(&it)),
+            Some(IlOperand::Name(it)) => Some(self.pl7.name_ref(&it)),
+            Some(IlOperand::Literal(it)) => {
+                let at = it.syntax().text_range();
+                let message = format!("`{}` takes a bit that the program may write", op.info().mnemonic);
+                self.pl7.b.oddity(OddityKind::OperandType(message), at, it.syntax().text().to_string());
+                None
+            }
+            Some(IlOperand::Bracket(_) | IlOperand::Label(_)) | None => None,
+        };
+        let when = self.used(false);
+        let Some((object, at)) = place else {
+            // `R` and `S` alone drive the inputs of the block that is open.
+            let pin = if op == IlOp::R { Pin::Reset } else { Pin::Preset };
+            self.drive_open_block(op, pin, when, range, text);
+            return;
+        };
+        let data = self.pl7.b.model.object(object);
+        if data.class == Class::Indirect {
+            return;
+        }
+        if data.class == Class::Block && matches!(op, IlOp::S | IlOp::R) {
+            let starts = data.text.to_ascii_uppercase().starts_with("%MN");
+            let pin = match op {
+                IlOp::R => Pin::Reset,
+                _ if starts => Pin::Start,
+                _ => Pin::Preset,
+            };
+            self.check_pin(object, op, range, text);
+            self.pl7.b.drive(object, pin, when, None, at, range);
+            return;
+        }
+        if self.pl7.kind(object) == Kind::Number || data.ty == Type::Block {
+            let message = format!("`{}` takes a bit, and `{}` is {}", op.info().mnemonic, data.text, describe(data.ty));
+            let text = data.text.clone();
+            self.pl7.b.oddity(OddityKind::OperandType(message), at, text);
+            return;
+        }
+        if let Some(block) = self.block.as_ref().filter(|it| !it.outputs) {
+            let message = format!("`{text}` stands before `OUT_BLK` of `{}`", block.text);
+            self.structure(range, text, &message);
+        }
+        match op {
+            IlOp::St => self.pl7.b.assign(object, false, when, at, range),
+            IlOp::StN => {
+                let value = self.pl7.b.exprs().not(when);
+                self.pl7.b.assign(object, true, value, at, range);
+            }
+            IlOp::S => self.pl7.b.set(object, when, at, range),
+            _ => self.pl7.b.reset(object, when, at, range),
+        }
+    }
+
+    /// `IN %TM1`, `CU %C8`, and the same without operand inside a structured block.
+    fn drive(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange, text: &str) {
+        self.in_parentheses(OddityKind::StoreInParentheses, range, text);
+        let pin = match op {
+            IlOp::Cu => Pin::Up,
+            IlOp::Cd => Pin::Down,
+            IlOp::I => Pin::Store,
+            IlOp::O => Pin::Retrieve,
+            IlOp::U => Pin::Advance,
+            _ => Pin::Start,
+        };
+        let place = match instr.operand() {
+            Some(IlOperand::Object(it)) => Some(self.pl7.object_ref(&it)),
+            Some(IlOperand::Name(it)) => Some(self.pl7.name_ref(&it)),
+            _ => None,
+        };
+        let when = self.used(false);
+        match place {
+            Some((object, at)) => {
+                self.check_pin(object, op, range, text);
+                self.pl7.b.drive(object, pin, when, None, at, range);
+            }
+            None => self.drive_open_block(op, pin, when, range, text),
+        }
+    }
+
+    fn drive_open_block(&mut self, op: IlOp, pin: Pin, when: ExprId, range: TextRange, text: &str) {
+        let Some(block) = &self.block else { return };
+        if block.outputs {
+            let message = format!("`{text}` drives an input of `{}` behind its `OUT_BLK`", block.text);
+            self.structure(range, text, &message);
+            return;
+        }
+        let object = block.object;
+        let starts = block.text.to_ascii_uppercase().starts_with("%MN");
+        let pin = if pin == Pin::Preset && starts { Pin::Start } else { pin };
+        self.check_pin(object, op, range, text);
+        self.pl7.b.drive(object, pin, when, None, range, range);
+    }
+
+    /// Reports an input that the block does not have.
+    fn check_pin(&mut self, object: ObjectId, op: IlOp, range: TextRange, text: &str) {
+        let data = self.pl7.b.model.object(object);
+        let Some(inputs) = inputs_of(&data.text) else { return };
+        if !inputs.contains(&op) {
+            let message = format!("`{}` has no input `{}`", data.text, op.info().mnemonic);
+            self.structure(range, text, &message);
+        }
+    }
+
+    fn open_block(&mut self, instr: &ast::IlInstr, range: TextRange) {
+        self.close_block();
+        if let Some(IlOperand::Object(it)) = instr.operand() {
+            let (object, at) = self.pl7.object_ref(&it);
+            let text = self.pl7.b.model.object(object).text.clone();
+            if self.pl7.b.model.object(object).class == Class::Block {
+                self.pl7.b.touch(object, Mode::Drive(Pin::Whole), at);
+            }
+            self.block = Some(Block { object, text, range, outputs: false });
+        }
+    }
+
+    /// A block that is still open where another starts, or where the unit ends.
+    fn close_block(&mut self) {
+        if let Some(block) = self.block.take() {
+            let message = format!("the block of `{}` is not closed by `END_BLK`", block.text);
+            self.structure(block.range, "BLK", &message);
+        }
+    }
+
+    /// `[%MW10:=%MW0+100]`: done when the result is 1.
+    fn operation(&mut self, instr: &ast::IlInstr, range: TextRange) {
+        if self.result.is_none() && self.parentheses.is_empty() {
+            self.pl7.b.oddity(OddityKind::SentenceStart, range, "[");
+        }
+        self.in_parentheses(OddityKind::StoreInParentheses, range, "[");
+        let when = self.used(false);
+        let before = self.pl7.b.path();
+        let inside = self.pl7.b.exprs().and(before, when);
+        self.pl7.b.enter(inside, None);
+        match instr.bracket().and_then(|it| it.content()) {
+            Some(BracketContent::Assign(it)) => self.pl7.assignment(&it),
+            Some(BracketContent::Call(it)) => self.pl7.call_stmt(&it),
+            Some(BracketContent::Expr(it)) => {
+                self.pl7.expr(&it);
+            }
+            None => {}
+        }
+        self.pl7.b.enter(before, None);
+    }
+
+    fn jump(&mut self, when: ExprId, instr: &ast::IlInstr, range: TextRange, text: &str) {
+        self.in_parentheses(OddityKind::JumpInParentheses, range, text);
+        if let Some(&(_, pushed)) = self.stack.last() {
+            let oddity = self.pl7.b.oddity(OddityKind::StackMismatch, range, text);
+            oddity.related.push((pushed, "pushed here"));
+        }
+        match instr.operand() {
+            Some(IlOperand::Label(it)) => self.pl7.jump(it.text(), it.text_range(), when, range),
+            Some(IlOperand::Name(it)) => {
+                if let Some(name) = it.name() {
+                    self.pl7.jump(name.text(), name.text_range(), when, range);
+                }
+            }
+            _ => {}
+        }
+        if when == Exprs::TRUE {
+            self.result = None;
+        }
+    }
+
+    fn leave(&mut self, when: ExprId, how: Leave, range: TextRange) {
+        self.pl7.leave(when, how, range);
+        if when == Exprs::TRUE {
+            self.result = None;
+        }
+    }
+}
+
+/// Inputs of a function block by its address (PL7:977-999 for the families; the inputs are those of the blocks'
+/// drawings and of the vendor's second volume).
+fn inputs_of(address: &str) -> Option<&'static [IlOp]> {
+    let letters = address.trim_start_matches('%').trim_end_matches(|it: char| it.is_ascii_digit());
+    Some(match letters.to_ascii_uppercase().as_str() {
+        "TM" => &[IlOp::In],
+        "C" => &[IlOp::R, IlOp::S, IlOp::Cu, IlOp::Cd],
+        "MN" => &[IlOp::S],
+        "R" => &[IlOp::R, IlOp::I, IlOp::O],
+        "DR" => &[IlOp::R, IlOp::U],
+        _ => return None,
+    })
+}
+
+fn describe(ty: Type) -> &'static str {
+    match ty {
+        Type::Bool => "a bit",
+        Type::Byte => "a byte",
+        Type::Word => "a word",
+        Type::Double => "a double word",
+        Type::Float => "a floating-point number",
+        Type::BitTable(_) => "a table of bits",
+        Type::WordTable(_) | Type::DoubleTable(_) | Type::FloatTable(_) => "a table of words",
+        Type::Text(_) => "a character string",
+        Type::Block => "a function block",
+        Type::Unknown => "of another type",
+    }
+}

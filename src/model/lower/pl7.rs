@@ -1,0 +1,474 @@
+//! What PL7 instruction list and structured text share: operands, expressions, numeric operations, calls.
+
+use rowan::TextRange;
+use rowan::ast::AstNode as _;
+use smol_str::SmolStr;
+
+use super::builder::Builder;
+use crate::model::entity::Entity;
+use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
+use crate::model::literal::{self, Value};
+use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
+use crate::model::unit::{Argument, Call, Callee, Constant, DeadCause, Leave, Mode, OddityKind, StatementKind};
+use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
+use crate::syntax::{Language, SyntaxNode};
+
+/// What kind of value an expression has, as far as it shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Bit,
+    /// Word, double word, float or table.
+    Number,
+    Unknown,
+}
+
+pub(super) struct Pl7 {
+    pub(super) b: Builder,
+}
+
+/// The heading line, else the first sentence's first token.
+fn heading(root: &SyntaxNode) -> TextRange {
+    let root = ast::Root::cast(root.clone());
+    let heading = root.as_ref().and_then(|it| it.headings().next()).map(|it| it.syntax().text_range());
+    let first = || {
+        let sentence = root.as_ref()?.sentences().next()?;
+        let mut tokens = sentence.syntax().descendants_with_tokens().filter_map(rowan::NodeOrToken::into_token);
+        Some(tokens.find(|it| !it.kind().is_trivia())?.text_range())
+    };
+    heading.or_else(first).unwrap_or_default()
+}
+
+impl Pl7 {
+    pub(super) fn new(root: &SyntaxNode, entity: Entity, language: Language) -> Self {
+        Self { b: Builder::new(entity, language, heading(root)) }
+    }
+
+    fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
+        self.b.oddity(OddityKind::Address(error), range, text);
+        self.b.object(Object {
+            text: text.into(),
+            class: Class::Indirect,
+            ty: Type::Unknown,
+            footprint: Footprint::new(Area::Indirect, 0, 1),
+            rights: Rights::Unknown,
+            extracted: false,
+            indexed: false,
+        })
+    }
+
+    /// A direct object. Reads of its index are recorded.
+    pub(super) fn object_ref(&mut self, it: &ast::ObjectRef) -> (ObjectId, TextRange) {
+        let range = it.syntax().text_range();
+        let address = it.address();
+        let parsed = match it.index() {
+            Some(index) => {
+                if let Some(expr) = index.expr() {
+                    self.expr(&expr);
+                }
+                object::pl7::parse_indexed(&address, it.suffix().as_deref()).map(|mut object| {
+                    object.text = it.syntax().text().to_string().split_whitespace().collect::<String>().into();
+                    object
+                })
+            }
+            None => object::pl7::parse(&address),
+        };
+        let id = match parsed {
+            Ok(object) => self.b.object(object),
+            Err(error) => self.address_error(error, range, &address),
+        };
+        (id, range)
+    }
+
+    /// A symbol or an item of a DFB instance.
+    pub(super) fn name_ref(&mut self, it: &ast::NameRef) -> (ObjectId, TextRange) {
+        let range = it.syntax().text_range();
+        let path = it.path();
+        let indexed = it.index();
+        if let Some(expr) = indexed.as_ref().and_then(ast::Index::expr) {
+            self.expr(&expr);
+        }
+        if let Some(suggestion) = object::pl7::suggest(&path) {
+            let message = format!("`{path}` lacks its percent sign");
+            let error =
+                object::AddressError { kind: AddressErrorKind::Malformed, message, suggestion: Some(suggestion) };
+            return (self.address_error(error, range, &path), range);
+        }
+        let mut object = Object::symbol(&path);
+        object.indexed = indexed.is_some();
+        if let Some(suffix) = it.suffix() {
+            object.extracted = suffix.to_ascii_uppercase().starts_with(":X");
+            if object.extracted {
+                object.ty = Type::Bool;
+            }
+        }
+        (self.b.object(object), range)
+    }
+
+    pub(super) fn ty(&self, object: ObjectId) -> Type {
+        self.b.model.object(object).ty
+    }
+
+    pub(super) fn kind(&self, object: ObjectId) -> Kind {
+        match self.ty(object) {
+            Type::Bool => Kind::Bit,
+            Type::Unknown => Kind::Unknown,
+            _ => Kind::Number,
+        }
+    }
+
+    /// Records a read of an object.
+    pub(super) fn read(&mut self, object: ObjectId, range: TextRange) -> ExprId {
+        if self.b.model.object(object).class == Class::Indirect {
+            return self.b.exprs().opaque();
+        }
+        self.b.read(object, range)
+    }
+
+    /// The object that an expression is, when it is nothing else.
+    pub(super) fn place(&mut self, expr: &Expr) -> Option<(ObjectId, TextRange)> {
+        match expr {
+            Expr::Object(it) => Some(self.object_ref(it)),
+            Expr::Name(it) => Some(self.name_ref(it)),
+            Expr::Paren(it) => self.place(&it.expr()?),
+            _ => None,
+        }
+    }
+
+    pub(super) fn literal(&mut self, it: &ast::Literal) -> (ExprId, Kind) {
+        let Some(token) = it.token() else { return (self.b.exprs().opaque(), Kind::Unknown) };
+        let range = token.text_range();
+        match literal::parse_pl7(token.text()) {
+            Ok(Value::Bool(value)) => (Exprs::bool(value), Kind::Bit),
+            Ok(Value::Int { value, .. }) => (self.b.exprs().int(value), Kind::Number),
+            Ok(Value::Real(value)) => (self.b.exprs().float(value), Kind::Number),
+            Ok(Value::Count(value)) => (self.b.exprs().int(i64::from(value)), Kind::Number),
+            Ok(value) => {
+                let text = SmolStr::new(token.text());
+                let expr = self.b.exprs().text(&text);
+                if matches!(value, Value::Time { .. } | Value::S5Time { .. }) {
+                    self.b.model.constants.push(Constant { value, range, text });
+                }
+                (expr, Kind::Number)
+            }
+            Err(error) => {
+                self.b.oddity(OddityKind::Literal(error), range, token.text());
+                (self.b.exprs().opaque(), Kind::Unknown)
+            }
+        }
+    }
+
+    /// Evaluates an expression: records its reads, gives its value. The tree's depth is limited by the parser.
+    pub(super) fn expr(&mut self, expr: &Expr) -> (ExprId, Kind) {
+        match expr {
+            Expr::Literal(it) => self.literal(it),
+            Expr::Object(it) => {
+                let (object, range) = self.object_ref(it);
+                (self.read(object, range), self.kind(object))
+            }
+            Expr::Name(it) => {
+                let (object, range) = self.name_ref(it);
+                (self.read(object, range), self.kind(object))
+            }
+            Expr::Paren(it) => match it.expr() {
+                Some(inner) => self.expr(&inner),
+                None => (self.b.exprs().opaque(), Kind::Unknown),
+            },
+            Expr::Unary(it) => self.unary(it),
+            Expr::Bin(it) => self.binary(it),
+            Expr::Call(it) => self.call_expr(it),
+        }
+    }
+
+    fn optional(&mut self, expr: Option<Expr>) -> (ExprId, Kind) {
+        match expr {
+            Some(expr) => self.expr(&expr),
+            None => (self.b.exprs().opaque(), Kind::Unknown),
+        }
+    }
+
+    fn unary(&mut self, it: &ast::UnaryExpr) -> (ExprId, Kind) {
+        let Some(operand) = it.operand() else { return (self.b.exprs().opaque(), Kind::Unknown) };
+        match it.op() {
+            Some(UnaryOp::Re | UnaryOp::Fe) => {
+                let rising = it.op() == Some(UnaryOp::Re);
+                match self.place(&operand) {
+                    Some((object, range)) => (self.b.edge(object, rising, range), Kind::Bit),
+                    None => {
+                        self.expr(&operand);
+                        (self.b.exprs().opaque(), Kind::Bit)
+                    }
+                }
+            }
+            Some(UnaryOp::Not) => {
+                let (value, kind) = self.expr(&operand);
+                match kind {
+                    Kind::Number => (self.b.exprs().call("NOT", vec![value]), Kind::Number),
+                    _ => (self.b.exprs().not(value), kind),
+                }
+            }
+            Some(UnaryOp::Minus) => {
+                // `-32768` is one constant: its digits alone are out of range.
+                if let Expr::Literal(literal) = &operand
+                    && let Some(token) = literal.token()
+                    && let Ok(Value::Int { value, .. }) = literal::parse_pl7(&format!("-{}", token.text()))
+                {
+                    return (self.b.exprs().int(value), Kind::Number);
+                }
+                let (value, _) = self.expr(&operand);
+                (self.b.exprs().negate(value), Kind::Number)
+            }
+            Some(UnaryOp::Plus) | None => self.expr(&operand),
+        }
+    }
+
+    fn binary(&mut self, it: &ast::BinExpr) -> (ExprId, Kind) {
+        let (a, a_kind) = self.optional(it.lhs());
+        let (b, b_kind) = self.optional(it.rhs());
+        let numeric = a_kind == Kind::Number || b_kind == Kind::Number;
+        let kind = match (a_kind, b_kind) {
+            (Kind::Bit, _) | (_, Kind::Bit) => Kind::Bit,
+            _ => Kind::Unknown,
+        };
+        let Some(op) = it.op() else { return self.optional(None) };
+        let exprs = self.b.exprs();
+        let arithmetic = |operator| (operator, Kind::Number);
+        let (operator, kind) = match op {
+            BinOp::And if !numeric => return (exprs.and(a, b), kind),
+            BinOp::Or if !numeric => return (exprs.or(a, b), kind),
+            BinOp::Xor if !numeric => return (exprs.xor(a, b), kind),
+            BinOp::Eq => return (exprs.compare(Comparison::Eq, a, b), Kind::Bit),
+            BinOp::Ne => return (exprs.compare(Comparison::Ne, a, b), Kind::Bit),
+            BinOp::Lt => return (exprs.compare(Comparison::Lt, a, b), Kind::Bit),
+            BinOp::Le => return (exprs.compare(Comparison::Le, a, b), Kind::Bit),
+            BinOp::Gt => return (exprs.compare(Comparison::Gt, a, b), Kind::Bit),
+            BinOp::Ge => return (exprs.compare(Comparison::Ge, a, b), Kind::Bit),
+            BinOp::Assign => return self.optional(None),
+            BinOp::And => arithmetic(Operator::And),
+            BinOp::Or => arithmetic(Operator::Or),
+            BinOp::Xor => arithmetic(Operator::Xor),
+            BinOp::Add => arithmetic(Operator::Add),
+            BinOp::Sub => arithmetic(Operator::Sub),
+            BinOp::Mul => arithmetic(Operator::Mul),
+            BinOp::Div => arithmetic(Operator::Div),
+            BinOp::Rem => arithmetic(Operator::Rem),
+        };
+        (exprs.binary(operator, a, b), kind)
+    }
+
+    fn call_expr(&mut self, it: &ast::CallExpr) -> (ExprId, Kind) {
+        let function = it.function();
+        let mut values = Vec::new();
+        for (position, argument) in it.arguments().into_iter().enumerate() {
+            let Some(argument) = argument else { continue };
+            values.push(self.argument(&argument, function, position).1);
+        }
+        let name = it.name().map(|it| it.text().to_ascii_uppercase()).unwrap_or_default();
+        let kind = match function.and_then(|it| it.result) {
+            Some(crate::syntax::pl7::functions::Kind::Bit) => Kind::Bit,
+            Some(_) => Kind::Number,
+            None => Kind::Unknown,
+        };
+        (self.b.exprs().call(&name, values), kind)
+    }
+
+    /// An argument of a function: read, or written where the function writes it.
+    fn argument(
+        &mut self,
+        argument: &Expr,
+        function: Option<&'static crate::syntax::pl7::functions::Function>,
+        position: usize,
+    ) -> (Option<ObjectId>, ExprId) {
+        use crate::syntax::pl7::functions::Access;
+        let access = match function {
+            Some(function) => function.parameters.get(position).map_or(Access::Read, |it| it.access),
+            // An instance of a DFB: what it does with an actual is its type's affair.
+            None => Access::ReadWrite,
+        };
+        if access != Access::Read
+            && let Some((object, range)) = self.place(argument)
+        {
+            let mode = if access == Access::Write { Mode::Output } else { Mode::InOut };
+            if self.b.model.object(object).class != Class::Indirect {
+                self.b.touch(object, mode, range);
+            }
+            return (Some(object), self.b.exprs().opaque());
+        }
+        let (value, _) = self.expr(argument);
+        (None, value)
+    }
+
+    /// `target := value`.
+    pub(super) fn assignment(&mut self, it: &ast::AssignStmt) {
+        let range = it.syntax().text_range();
+        let (value, kind) = match it.value() {
+            Some(value) => self.expr(&value),
+            None => (self.b.exprs().opaque(), Kind::Unknown),
+        };
+        let Some((object, at)) = it.target().and_then(|it| self.place(&it)) else { return };
+        self.assign(object, value, kind, at, range);
+    }
+
+    pub(super) fn assign(&mut self, object: ObjectId, value: ExprId, kind: Kind, at: TextRange, range: TextRange) {
+        if self.b.model.object(object).class == Class::Indirect {
+            return;
+        }
+        let is_bit = match self.kind(object) {
+            Kind::Bit => true,
+            Kind::Number => false,
+            Kind::Unknown => kind == Kind::Bit,
+        };
+        if is_bit {
+            let value = match self.b.exprs().get(value) {
+                crate::model::expr::Expr::Int(0) => Exprs::FALSE,
+                crate::model::expr::Expr::Int(1) => Exprs::TRUE,
+                _ => value,
+            };
+            self.b.assign(object, false, value, at, range);
+        } else {
+            self.b.store(object, value, at, range);
+        }
+    }
+
+    /// A statement that is not an assignment nor a control structure: an operator with its operand, a function, a
+    /// subroutine, a DFB instance.
+    pub(super) fn call_stmt(&mut self, it: &ast::CallStmt) {
+        let range = it.syntax().text_range();
+        let Some(callee) = it.callee() else { return };
+        let name = SmolStr::new(callee.text().to_ascii_uppercase());
+        if let Some(number) = it.subroutine() {
+            self.subroutine(number, callee.text(), Exprs::TRUE, callee.text_range(), range);
+            return;
+        }
+        if let Some(operand) = it.operand().filter(|_| !it.has_parentheses()) {
+            let Some((object, at)) = self.place(&operand) else {
+                self.expr(&operand);
+                return;
+            };
+            if self.b.model.object(object).class == Class::Indirect {
+                return;
+            }
+            match name.as_str() {
+                "SET" => self.b.set(object, Exprs::TRUE, at, range),
+                "RESET" => self.b.reset(object, Exprs::TRUE, at, range),
+                "INC" | "DEC" => {
+                    let before = self.b.read(object, at);
+                    let one = self.b.exprs().int(1);
+                    let operator = if name == "INC" { Operator::Add } else { Operator::Sub };
+                    let value = self.b.exprs().binary(operator, before, one);
+                    self.b.store(object, value, at, range);
+                }
+                _ => {
+                    self.block_statement(&name, object, at, range);
+                }
+            }
+            return;
+        }
+        let function = it.function();
+        let mut arguments = Vec::new();
+        for (position, argument) in it.arguments().into_iter().enumerate() {
+            let Some(argument) = argument else { continue };
+            let at = argument.syntax().text_range();
+            let (object, _) = self.argument(&argument, function, position);
+            arguments.push(Argument { name: None, object, range: at });
+        }
+        let callee_kind = match function {
+            Some(_) => Callee::Function(name),
+            None => Callee::Instance(callee.text().to_lowercase().into()),
+        };
+        let anchor = self.b.anchor(callee.text_range());
+        let call = Call {
+            callee: callee_kind,
+            text: callee.text().into(),
+            statement: 0,
+            anchor,
+            when: Exprs::TRUE,
+            instance: None,
+            instance_range: None,
+            arguments,
+            full: true,
+        };
+        self.b.call(call, range);
+    }
+
+    /// `START %TM1;`, `DOWN %TM1;`, `PRESET %C8;`, `UP %C8;`: a statement that drives a block.
+    fn block_statement(&mut self, name: &str, object: ObjectId, at: TextRange, range: TextRange) {
+        use crate::model::unit::Pin;
+        let pin = match name {
+            "START" => Pin::Start,
+            "PRESET" => Pin::Preset,
+            "UP" => Pin::Up,
+            "DOWN" => Pin::Down,
+            "PUT" => Pin::Store,
+            "GET" => Pin::Retrieve,
+            _ => Pin::Whole,
+        };
+        self.b.drive(object, pin, Exprs::TRUE, None, at, range);
+    }
+
+    pub(super) fn subroutine(&mut self, number: u32, text: &str, when: ExprId, at: TextRange, range: TextRange) {
+        let anchor = self.b.anchor(at);
+        let call = Call {
+            callee: Callee::Subroutine(number),
+            text: text.into(),
+            statement: 0,
+            anchor,
+            when,
+            instance: None,
+            instance_range: None,
+            arguments: Vec::new(),
+            full: false,
+        };
+        self.b.call(call, range);
+        self.b.wipe_by_call();
+    }
+
+    pub(super) fn label(&mut self, it: &ast::LabelDef) {
+        let Some(token) = it.token() else { return };
+        let name =
+            it.number().map_or_else(|| SmolStr::new(token.text().to_ascii_uppercase()), |it| it.to_string().into());
+        self.b.label(name, token.text().into(), token.text_range());
+    }
+
+    /// Jump to a label written as `%L20`, or as a word.
+    pub(super) fn jump(&mut self, text: &str, at: TextRange, when: ExprId, range: TextRange) {
+        let number = ast::label_number(text);
+        let name = number.map_or_else(|| SmolStr::new(text.to_ascii_uppercase()), |it| it.to_string().into());
+        self.b.mark_all_exits();
+        self.b.jump(name, text.into(), at, when, range);
+    }
+
+    pub(super) fn leave(&mut self, when: ExprId, how: Leave, range: TextRange) {
+        self.b.statement(StatementKind::Return { when, how }, range);
+        self.b.mark_all_exits();
+        let cause = if how == Leave::Subroutine { DeadCause::Return } else { DeadCause::End };
+        self.b.leave(when, cause, range);
+    }
+
+    pub(super) fn halt(&mut self, when: ExprId, range: TextRange) {
+        self.b.statement(StatementKind::Halt, range);
+        self.b.mark_all_exits();
+        self.b.leave(when, DeadCause::Halt, range);
+    }
+}
+
+/// Labels that a jump below them goes to, for both languages.
+pub(super) fn back_targets(root: &SyntaxNode) -> rustc_hash::FxHashSet<SmolStr> {
+    use crate::syntax::SyntaxKind;
+    let mut labels = rustc_hash::FxHashSet::default();
+    let mut back = rustc_hash::FxHashSet::default();
+    for token in root.descendants_with_tokens().filter_map(rowan::NodeOrToken::into_token) {
+        if token.kind() != SyntaxKind::LabelAddress {
+            continue;
+        }
+        let name: SmolStr = match ast::label_number(token.text()) {
+            Some(number) => number.to_string().into(),
+            None => token.text().to_ascii_uppercase().into(),
+        };
+        if token.parent().is_some_and(|it| it.kind() == SyntaxKind::LabelDef) {
+            labels.insert(name);
+        } else if labels.contains(&name) {
+            back.insert(name);
+        }
+    }
+    back
+}

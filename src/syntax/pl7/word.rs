@@ -1,0 +1,106 @@
+//! Words that the language reserves, told apart without allocation and regardless of case.
+
+/// A word of at most 16 bytes in ASCII upper case, as a number that can be matched; 0 for a longer word.
+pub(super) const fn pack(text: &str) -> u128 {
+    let bytes = text.as_bytes();
+    if bytes.len() > 16 {
+        return 0;
+    }
+    let mut packed = 0;
+    let mut at = 0;
+    while at < bytes.len() {
+        packed = packed << 8 | bytes[at].to_ascii_uppercase() as u128;
+        at += 1;
+    }
+    packed
+}
+
+macro_rules! words {
+    ($(#[$meta:meta])* $vis:vis enum $name:ident { $($word:ident = $text:literal),* $(,)? }) => {
+        $(#[$meta])*
+        $vis enum $name { $($word),* }
+
+        impl $name {
+            $vis fn of(text: &str) -> Option<Self> {
+                #[expect(non_upper_case_globals, reason = "the names of the variants")]
+                mod packed {
+                    $(pub(super) const $word: u128 = crate::syntax::pl7::word::pack($text);)*
+                }
+                match crate::syntax::pl7::word::pack(text) {
+                    $(packed::$word => Some(Self::$word),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+pub(super) use words;
+
+words! {
+    /// Words that structure a text or an expression and are therefore no operands.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub(super) enum Keyword {
+        If = "IF",
+        Then = "THEN",
+        Elsif = "ELSIF",
+        Elseif = "ELSEIF",
+        Else = "ELSE",
+        EndIf = "END_IF",
+        While = "WHILE",
+        Do = "DO",
+        EndWhile = "END_WHILE",
+        Repeat = "REPEAT",
+        Until = "UNTIL",
+        EndRepeat = "END_REPEAT",
+        For = "FOR",
+        To = "TO",
+        EndFor = "END_FOR",
+        Exit = "EXIT",
+        Jump = "JUMP",
+        Return = "RETURN",
+        Halt = "HALT",
+        And = "AND",
+        Or = "OR",
+        Xor = "XOR",
+        Not = "NOT",
+        Rem = "REM",
+        Re = "RE",
+        Fe = "FE",
+        True = "TRUE",
+        False = "FALSE",
+        Program = "PROGRAM",
+        EndProgram = "END_PROGRAM",
+    }
+}
+
+/// Number of the subroutine that `SR5` or `%SR5` calls; `None` for any other word.
+pub(super) fn subroutine(text: &str) -> Option<u32> {
+    let text = text.strip_prefix('%').unwrap_or(text);
+    let (word, number) = text.split_at_checked(2)?;
+    if word.eq_ignore_ascii_case("SR") && number.bytes().all(|it| it.is_ascii_digit()) {
+        return number.parse().ok();
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_ignore_case_and_nothing_else() {
+        assert_eq!(Keyword::of("end_While"), Some(Keyword::EndWhile));
+        for text in ["", "END_WHILE_", "ENDWHILE", "IFF", "é", "A_WORD_BEYOND_SIXTEEN_BYTES"] {
+            assert_eq!(Keyword::of(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn subroutines() {
+        assert_eq!(subroutine("SR12"), Some(12));
+        assert_eq!(subroutine("%sr0"), Some(0));
+        for text in ["SR", "%SR", "SRi", "SR99999999999", "S", "é", "SR+1"] {
+            assert_eq!(subroutine(text), None, "{text}");
+        }
+    }
+}

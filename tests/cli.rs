@@ -1,0 +1,222 @@
+//! The program as a user runs it: arguments, exit codes, streams.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+fn command(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_plclint"));
+    command.current_dir(folder).env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE").env("TERM", "dumb");
+    command
+}
+
+struct Ran {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+impl From<Output> for Ran {
+    fn from(output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is UTF-8");
+        Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    }
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Ran {
+    command(folder).args(arguments).stdin(Stdio::null()).output().expect("the program starts").into()
+}
+
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = TempDir::new().expect("a temporary folder");
+    for (path, text) in files {
+        let path = folder.path().join(path);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, text).expect("a file");
+    }
+    folder
+}
+
+/// Wrong usage: code 2, nothing on standard output, and a message that says `what`.
+#[track_caller]
+fn assert_usage(ran: &Ran, what: &str) {
+    assert_eq!(ran.code, Some(2), "{}", ran.err);
+    assert_eq!(ran.out, "");
+    assert!(ran.err.contains(what), "{}", ran.err);
+    assert!(!ran.err.contains("panicked"), "{}", ran.err);
+}
+
+#[test]
+fn help_is_no_mistake() {
+    let folder = folder(&[]);
+    for arguments in [&["--help"][..], &["check", "--help"], &["help", "rule"]] {
+        let ran = run(folder.path(), arguments);
+        assert_eq!(ran.code, Some(0), "{arguments:?}: {}", ran.err);
+        assert!(ran.out.contains("Usage: plclint"), "{}", ran.out);
+    }
+    let version = run(folder.path(), &["--version"]);
+    assert_eq!(version.out, format!("plclint {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn wrong_arguments_are_wrong_usage() {
+    let folder = folder(&[]);
+    let usage = |arguments: &[&str], what: &str| assert_usage(&run(folder.path(), arguments), what);
+    usage(&["chek"], "unrecognized subcommand");
+    usage(&["check", "--format", "xml"], "invalid value 'xml'");
+    usage(&["check", "--dialect", "cobol"], "invalid value 'cobol'");
+    usage(&["check", "--threads", "0"], "invalid value '0'");
+    usage(&["check", "--severity", "all"], "RULE=LEVEL");
+    usage(&["check", "--severity", "all=fatal"], "`fatal` is no severity");
+    usage(&["check", "--quiet", "--verbose"], "cannot be used with");
+    usage(&["check", "--config", "x", "--isolated"], "cannot be used with");
+    usage(&["check", "--select", "no-such-rule"], "--select: no rule or group is called `no-such-rule`");
+    usage(&["check", "--ignore", "all,no-such-rule"], "--ignore: no rule or group is called `no-such-rule`");
+    usage(&["check", "--encoding", "ebcdic"], "--encoding: unknown encoding `ebcdic`");
+    usage(&["check", "nowhere.awl"], "nowhere.awl: there is no such file or folder");
+    usage(&["check", "-", "a.awl"], "standard input (`-`) is checked alone");
+    usage(&["check", "--stdin-filename", "a.awl"], "give `-` as the path");
+    usage(&["check", "--config", "nowhere.toml"], "nowhere.toml: the configuration cannot be read");
+    usage(&["tree", "nowhere.awl"], "nowhere.awl: the file cannot be read");
+}
+
+#[test]
+fn a_wrong_configuration_is_wrong_usage_with_its_place() {
+    let folder = folder(&[
+        ("plclint.toml", "[rules]\nignore = ['all', 'no-such-rule']\n"),
+        ("sub/plclint.toml", "[rule]\n"),
+        ("sub/a.awl", ""),
+    ]);
+    assert_usage(&run(folder.path(), &["check"]), "plclint.toml:2:18: no rule or group is called `no-such-rule`");
+    assert_usage(&run(folder.path(), &["check", "sub/a.awl"]), "plclint.toml:1:2: unknown field `rule`");
+    assert_eq!(run(folder.path(), &["check", "--isolated"]).code, Some(0));
+}
+
+#[test]
+fn an_empty_folder_is_clean_and_the_last_line_says_so() {
+    let folder = folder(&[]);
+    let ran = run(folder.path(), &["check"]);
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+    assert!(ran.out.starts_with("0 files, 0 programs and blocks, 0 lines read in "), "{}", ran.out);
+    assert!(ran.out.ends_with("; no findings\n"), "{}", ran.out);
+    let quiet = run(folder.path(), &["check", "--quiet", "--statistics"]);
+    assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (Some(0), "", ""));
+}
+
+#[test]
+fn documents_for_programs_are_alone_on_standard_output() {
+    let folder = folder(&[]);
+    for format in ["json", "sarif"] {
+        let ran = run(folder.path(), &["check", "--format", format]);
+        let document: serde_json::Value = serde_json::from_str(&ran.out).expect("one document");
+        assert!(document.is_object());
+        assert!(ran.err.starts_with("0 files"), "the last line goes to the other stream: {}", ran.err);
+    }
+}
+
+#[test]
+fn reports_go_to_files() {
+    let folder = folder(&[]);
+    let ran = run(folder.path(), &["check", "--output", "sarif=a.sarif", "-o", "json=b.json"]);
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    assert!(ran.out.contains("0 files"), "the main report stays where it was: {}", ran.out);
+    let read = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&fs::read(folder.path().join(name)).expect("the file is there")).expect("JSON")
+    };
+    assert_eq!(read("a.sarif")["version"], "2.1.0");
+    assert_eq!(read("b.json")["version"], 1);
+    let ran = run(folder.path(), &["check", "--format", "json", "--output", "c.json"]);
+    assert_eq!(read("c.json")["tool"]["name"], "plclint");
+    assert!(ran.out.starts_with("0 files") && ran.out.lines().count() == 1, "{}", ran.out);
+    let ran = run(folder.path(), &["check", "--output", "no/such/folder/a.txt"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.err.contains("the report cannot be written"), "{}", ran.err);
+}
+
+#[test]
+fn the_list_of_rules_is_the_registry() {
+    let folder = folder(&[]);
+    let ran = run(folder.path(), &["rules", "--format", "json"]);
+    let listed: Vec<serde_json::Value> = serde_json::from_str(&ran.out).expect("an array");
+    let codes: Vec<&str> = listed.iter().filter_map(|it| it["code"].as_str()).collect();
+    let registry: Vec<&str> = plclint::lint::rules().iter().map(|it| it.code).collect();
+    assert_eq!(codes, registry);
+    assert_eq!(run(folder.path(), &["rules"]).out.lines().count(), registry.len());
+    assert!(run(folder.path(), &["rules", "--format", "markdown"]).out.starts_with("# Rules\n"));
+}
+
+#[test]
+fn a_rule_is_explained_by_code_and_by_name() {
+    let folder = folder(&[]);
+    for rule in plclint::lint::rules() {
+        let ran = run(folder.path(), &["rule", &rule.code.to_lowercase()]);
+        assert_eq!(ran.code, Some(0), "{}", ran.err);
+        assert!(ran.out.starts_with(&format!("{} {}\n", rule.code, rule.name)), "{}", ran.out);
+        assert!(ran.out.contains("What to do instead"), "{}", ran.out);
+        assert_eq!(run(folder.path(), &["rule", rule.name]).out, ran.out);
+    }
+    assert_usage(&run(folder.path(), &["rule", "no-such-rule"]), "no rule is called `no-such-rule`");
+}
+
+#[test]
+fn colour_is_for_terminals_and_for_those_who_ask() {
+    let folder = folder(&[]);
+    if let Some(rule) = plclint::lint::rules().first() {
+        assert!(!run(folder.path(), &["rule", rule.code]).out.contains('\u{1b}'));
+        assert!(run(folder.path(), &["rule", rule.code, "--color", "always"]).out.contains('\u{1b}'));
+    }
+    assert!(!run(folder.path(), &["check", "--color", "never"]).out.contains('\u{1b}'));
+}
+
+#[test]
+fn completions_are_written_for_every_shell() {
+    let folder = folder(&[]);
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let ran = run(folder.path(), &["completions", shell]);
+        assert_eq!(ran.code, Some(0), "{}", ran.err);
+        assert!(ran.out.contains("extend-select"), "{shell}");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let folder = folder(&[]);
+    let mut child = command(folder.path())
+        .args(["completions", "zsh"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let ran = Ran::from(child.wait_with_output().expect("the program ends"));
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn standard_input_is_read() {
+    let folder = folder(&[]);
+    let mut child = command(folder.path())
+        .args(["check", "-", "--stdin-filename", "a.awl", "--dialect", "step7"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    stdin.write_all(b"      U     E 0.0\n      =     A 4.0\n").expect("the program reads");
+    drop(stdin);
+    let ran = Ran::from(child.wait_with_output().expect("the program ends"));
+    assert_eq!(ran.err, "");
+    assert!(ran.code.is_some_and(|it| it <= 1), "{:?}", ran.code);
+}
+
+#[test]
+fn the_syntax_tree_holds_the_whole_text() {
+    let folder = folder(&[("a.awl", "FUNCTION FC 1 : VOID\nBEGIN\n      U     E 0.0;\nEND_FUNCTION\n")]);
+    let ran = run(folder.path(), &["tree", "a.awl"]);
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    assert!(ran.out.starts_with("FC1 @0..59: Awl("), "{}", ran.out);
+}
