@@ -12,7 +12,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let is_bit = uses.object.ty == Type::Bool || uses.object.class == Class::Symbol;
         let is_block = uses.uses.iter().any(|it| matches!(it.mode, Mode::Drive(_)));
         let driven = matches!(uses.object.class, Class::Output | Class::Memory | Class::Data | Class::Symbol);
-        if !is_bit || is_block || !driven || !uses.object.is_fixed() || uses.is_scratch() {
+        if !is_bit || is_block || !driven || !uses.object.is_fixed() {
             continue;
         }
         let stored = |it: &GlobalUse<'_>| matches!(it.mode, Mode::Set | Mode::Reset);
@@ -24,6 +24,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         writes.extend(uses.with_mode(Mode::assigns).filter(|it| it.it.constant.is_none()));
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
+        // A scratch value that each unit assigns before it sets or resets it.
+        let starts_by_set = |at: usize| (at == 0 || writes[at - 1].unit != writes[at].unit) && stored(&writes[at]);
+        if uses.is_scratch() && !(0..writes.len()).any(starts_by_set) {
+            continue;
+        }
         let Some((second, others)) = drives::conflict(cx.program, &writes, |a, b| stored(a) != stored(b)) else {
             continue;
         };
