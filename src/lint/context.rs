@@ -45,6 +45,11 @@ impl<'a> UnitCx<'a> {
         nodes.get(&kind).map_or(&[], Vec::as_slice)
     }
 
+    /// Whether the author left parts of the unit out (`...`), as listings in documents do.
+    pub fn leaves_out(&self) -> bool {
+        self.parse.syntax().descendants_with_tokens().any(|it| it.kind() == SyntaxKind::Elision)
+    }
+
     /// Text of a place; empty when the range is not one.
     pub fn text_of(&self, range: TextRange) -> &'a str {
         self.text.get(usize::from(range.start())..usize::from(range.end())).unwrap_or_default()
@@ -57,16 +62,30 @@ pub struct ProgramCx<'a> {
     pub settings: &'a Settings,
     pub target: &'a Target,
     overlaps: OnceCell<Vec<(u32, u32)>>,
+    neighbours: OnceCell<FxHashMap<u32, Vec<u32>>>,
 }
 
 impl<'a> ProgramCx<'a> {
     pub(crate) fn new(program: &'a ProgramIndex<'a>, settings: &'a Settings, target: &'a Target) -> Self {
-        Self { program, settings, target, overlaps: OnceCell::new() }
+        Self { program, settings, target, overlaps: OnceCell::new(), neighbours: OnceCell::new() }
     }
 
     /// See [`ProgramIndex::overlaps`].
     pub fn overlaps(&self) -> &[(u32, u32)] {
         self.overlaps.get_or_init(|| self.program.overlaps())
+    }
+
+    /// Other objects that share memory with an object, all by index.
+    pub fn neighbours(&self, object: u32) -> &[u32] {
+        let neighbours = self.neighbours.get_or_init(|| {
+            let mut neighbours: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+            for &(a, b) in self.overlaps() {
+                neighbours.entry(a).or_default().push(b);
+                neighbours.entry(b).or_default().push(a);
+            }
+            neighbours
+        });
+        neighbours.get(&object).map_or(&[], Vec::as_slice)
     }
 }
 

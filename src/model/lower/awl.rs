@@ -18,7 +18,8 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, Mode, OddityKind, Pin, Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, LoopKind, Mode, OddityKind, Pin, Section,
+    StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Relation, Shift};
@@ -867,7 +868,14 @@ impl Machine {
                     }
                     Some(object)
                 }
-                Operand::Constant(_) | Operand::Other => None,
+                Operand::Constant(_) | Operand::Other => {
+                    // A pointer to an area: the called block reads or writes there, and how much is not known here.
+                    if points_to_area(&bare_text(&value)) {
+                        self.b.model.reads_indirectly = true;
+                        self.b.model.writes_indirectly = true;
+                    }
+                    None
+                }
             };
             arguments.push(Argument { name, object, range });
         }
@@ -1147,7 +1155,12 @@ impl Machine {
             Op::Loop => {
                 self.opaque_result();
                 let when = self.b.exprs().opaque();
+                let before = self.b.model.loops.len();
                 self.jump(instr, when, range);
+                // LOOP counts down to 0, which a plain jump does not.
+                for it in &mut self.b.model.loops[before..] {
+                    it.kind = LoopKind::For;
+                }
             }
         }
     }
@@ -1450,6 +1463,12 @@ fn indirect_type(text: &str) -> Type {
         "" => Type::Unknown,
         _ => Type::Bool,
     }
+}
+
+/// `P#M100.0BYTE10`, `P#DB5.DBX0.0WORD4`: a pointer that names its area, unlike `P#4.0`.
+fn points_to_area(text: &str) -> bool {
+    let pointer = text.strip_prefix("P#").or_else(|| text.strip_prefix("p#"));
+    pointer.is_some_and(|it| it.starts_with(|it: char| it.is_ascii_alphabetic()))
 }
 
 /// `FC1`, `DB 5`, `"Motor"`: a block's name. SFC and SFB included.
