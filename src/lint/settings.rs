@@ -117,13 +117,13 @@ struct File {
 }
 
 /// The controller that programs are for.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Target {
+struct Target {
     /// `TSX 37-22`, `CPU 314`.
-    pub controller: Option<String>,
+    controller: Option<Spanned<String>>,
     /// `V3`, where the documents distinguish versions.
-    pub version: Option<String>,
+    version: Option<String>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -303,6 +303,12 @@ impl Settings {
         if let Some(name) = &overrides.encoding {
             forced = encoding(name).map_err(|message| ConfigError { origin: Origin::Option("--encoding"), message })?;
         }
+        if let Some(name) = &file.target.controller {
+            controller(name.get_ref()).map_err(|it| text.error(Some(name.span()), it))?;
+        }
+        if let Some(name) = &overrides.controller {
+            controller(name).map_err(|message| ConfigError { origin: Origin::Option("--target"), message })?;
+        }
         let base = selection(registry, &text, &file.rules, &overrides)?;
         let mut per_file = Vec::new();
         for it in &file.per_file {
@@ -372,15 +378,17 @@ impl Settings {
         selection.rules().collect()
     }
 
+    /// The controller, by a name that [`crate::target::Target`] reads.
     pub fn controller(&self) -> Option<&str> {
-        self.0.overrides.controller.as_deref().or(self.0.file.target.controller.as_deref())
+        let file = self.0.file.target.controller.as_ref().map(|it| it.get_ref().as_str());
+        self.0.overrides.controller.as_deref().or(file)
     }
 
     /// The controller's version; none when the command line names another controller than the file.
     pub fn version(&self) -> Option<&str> {
         let target = &self.0.file.target;
         match &self.0.overrides.controller {
-            Some(controller) if target.controller.as_ref() != Some(controller) => None,
+            Some(controller) if target.controller.as_ref().map(|it| it.get_ref()) != Some(controller) => None,
             _ => target.version.as_deref(),
         }
     }
@@ -516,6 +524,11 @@ fn selection(
     Ok(selection)
 }
 
+/// Whether the tables know a controller.
+fn controller(name: &str) -> Result<(), String> {
+    name.parse::<crate::target::Target>().map(drop).map_err(|it| it.to_string())
+}
+
 /// Reads the name of an encoding; `auto` is none.
 fn encoding(name: &str) -> Result<Option<Encoding>, String> {
     Encoding::parse_option(name).map_err(|it| it.to_string())
@@ -633,6 +646,7 @@ mod tests {
         assert!(error("[rules.options.W]\nx = 1").contains("is not one rule"));
         assert!(error("[rules]\nselekt = []").starts_with("plclint.toml:2:1: unknown field `selekt`"));
         assert!(error("[[per-file]]\nignore = []").contains("missing field `path`"));
+        assert!(error("[target]\ncontroller = 'TSX 99'").starts_with("plclint.toml:2:14: unknown controller"));
         assert!(error("[files]\nencoding = 'windows-1225'").starts_with("plclint.toml:2:12: unknown encoding"));
         assert!(error("[files]\nexclude = ['a{']").starts_with("plclint.toml:2:12: "));
         assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));

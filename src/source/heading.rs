@@ -90,6 +90,9 @@ fn numbered_block(text: &str) -> Option<(BlockName, &str)> {
 
 /// What follows the keyword that ends a STEP 7 block, if a line starts with one.
 pub(super) fn block_end(line: &str) -> Option<&str> {
+    if !line.starts_with(['E', 'e']) {
+        return None;
+    }
     let rest = strip_prefix_ignore_case(line, "END_")?;
     let (keyword, rest) = word(rest);
     BLOCK_KEYWORDS.iter().any(|(name, _)| name.eq_ignore_ascii_case(keyword)).then_some(rest)

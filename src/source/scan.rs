@@ -45,13 +45,13 @@ impl<'t> Lines<'t> {
     fn plain_line(&self, from: usize) -> (usize, Option<usize>) {
         let bytes = self.text.as_bytes();
         let rest = bytes.get(from..).unwrap_or_default();
-        let mut at = 0;
-        // An asterisk may open a comment: only then is the line read byte by byte.
-        match memchr3(b'\n', b'\r', b'*', rest) {
-            Some(hit) if rest[hit] == b'*' => {}
-            Some(hit) => return (after_break(bytes, from + hit), None),
+        // An asterisk may open a comment: only then does it matter what stands before it.
+        match find_break_or_asterisk(rest) {
+            Some((_, b'*')) => {}
+            Some((hit, _)) => return (after_break(bytes, from + hit), None),
             None => return (bytes.len(), None),
         }
+        let mut at = 0;
         let mut quote = None;
         while let Some(&byte) = rest.get(at) {
             match (byte, quote) {
@@ -78,6 +78,17 @@ impl<'t> Iterator for Lines<'t> {
         let start = self.pos;
         if start >= bytes.len() {
             return None;
+        }
+        // Most lines are code without comments.
+        let first = skip_blanks(self.text, start);
+        if bytes.get(first).is_some_and(|byte| !matches!(byte, b'(' | b'/' | b'T' | b't' | b'N' | b'n' | b'\n' | b'\r'))
+        {
+            let (end, comment) = self.plain_line(first);
+            if comment.is_none() {
+                self.pos = end;
+                let code = self.text.get(first..end).unwrap_or_default().trim_end();
+                return Some(Line { start, end, code_start: first, code });
+            }
         }
         let mut code: Option<(usize, usize)> = None;
         let mut from = start;
@@ -108,6 +119,17 @@ impl<'t> Iterator for Lines<'t> {
         let code = self.text.get(code_start..code_end).unwrap_or_default().trim_end();
         Some(Line { start, end, code_start, code })
     }
+}
+
+/// The first line break or asterisk, and which it is. Lines are short, and a search by vectors is slow to start.
+fn find_break_or_asterisk(bytes: &[u8]) -> Option<(usize, u8)> {
+    const SHORT: usize = 32;
+    let start = bytes.get(..SHORT).unwrap_or(bytes);
+    if let Some(at) = start.iter().position(|byte| matches!(byte, b'\n' | b'\r' | b'*')) {
+        return Some((at, start[at]));
+    }
+    let rest = bytes.get(SHORT..)?;
+    memchr3(b'\n', b'\r', b'*', rest).map(|at| (SHORT + at, rest[at]))
 }
 
 /// Whether a line is a title, whose text is free: parentheses and apostrophes in it mean nothing.

@@ -405,9 +405,9 @@ fn value_end(bytes: &[u8]) -> usize {
             b' ' | b'\t' => {
                 let start = skip_blanks(bytes, at);
                 let len = bytes[start..].iter().take_while(|it| it.is_ascii_alphanumeric() || **it == b'_').count();
-                let is = |it: &&str| it.as_bytes().eq_ignore_ascii_case(&bytes[start..start + len]);
-                let key = KEYS.iter().any(|it| is(it)) && bytes.get(skip_blanks(bytes, start + len)) == Some(&b':');
-                if key || FLAGS.iter().any(|it| is(it)) {
+                let is_next = |it: &&str| it.as_bytes().eq_ignore_ascii_case(&bytes[start..start + len]);
+                let has_value = bytes.get(skip_blanks(bytes, start + len)) == Some(&b':');
+                if (has_value && KEYS.iter().any(is_next)) || FLAGS.iter().any(is_next) {
                     return at;
                 }
                 at = start + len;
@@ -434,23 +434,23 @@ fn count_digits(bytes: &[u8], from: usize) -> usize {
 
 /// Whether the letters name a memory area, a block kind, timers or counters in either mnemonic set.
 pub(super) fn is_area(word: &[u8]) -> bool {
-    let lower = |at: usize| word[at].to_ascii_lowercase();
-    match word.len() {
-        1 => matches!(lower(0), b'm' | b'e' | b'a' | b'i' | b'q' | b'l' | b't' | b'z' | b'c'),
-        2 => match (lower(0), lower(1)) {
-            (b'm' | b'e' | b'a' | b'i' | b'q' | b'l', b'b' | b'w' | b'd') => true,
-            (b'd', b'b' | b'i') | (b'f', b'b' | b'c') | (b'o', b'b') => true,
-            (b'p', b'e' | b'a' | b'i' | b'q') => true,
-            _ => false,
-        },
-        3 => match (lower(0), lower(1), lower(2)) {
-            (b'd', b'b' | b'i', b'x' | b'b' | b'w' | b'd') => true,
-            (b'p', b'e' | b'a' | b'i' | b'q', b'b' | b'w' | b'd') => true,
-            (b's', b'f', b'b' | b'c') | (b'u', b'd', b't') => true,
-            _ => false,
-        },
-        _ => false,
-    }
+    let mut lower = [0; 3];
+    let Some(lower) = lower.get_mut(..word.len()) else { return false };
+    lower.copy_from_slice(word);
+    lower.make_ascii_lowercase();
+    matches!(
+        lower,
+        [b'm' | b'e' | b'a' | b'i' | b'q' | b'l' | b't' | b'z' | b'c']
+            | [b'm' | b'e' | b'a' | b'i' | b'q' | b'l', b'b' | b'w' | b'd']
+            | [b'd', b'b' | b'i']
+            | [b'f', b'b' | b'c']
+            | [b'o', b'b']
+            | [b'p', b'e' | b'a' | b'i' | b'q']
+            | [b'p', b'e' | b'a' | b'i' | b'q', b'b' | b'w' | b'd']
+            | [b'd', b'b' | b'i', b'x' | b'b' | b'w' | b'd']
+            | [b's', b'f', b'b' | b'c']
+            | [b'u', b'd', b't']
+    )
 }
 
 /// How many bytes of `rest` complete `word` to an absolute operand; `None` if it is none.

@@ -103,7 +103,7 @@ impl<'t> Scan<'t> {
             self.at += 1;
             match byte {
                 b';' | b'\n' | b'\r' => return,
-                b'/' if self.peek() == Some(b'/') => self.to_line_end(),
+                b'/' if self.peek() == Some(b'/') => self.skip_line(),
                 b'"' | b'\'' => self.quoted(byte),
                 _ => {}
             }
@@ -119,7 +119,7 @@ impl<'t> Scan<'t> {
         }
     }
 
-    fn to_line_end(&mut self) {
+    fn skip_line(&mut self) {
         let rest = &self.bytes[self.at..];
         self.at += memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
     }
