@@ -8,7 +8,13 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in cx.program.objects.iter().enumerate() {
-        if uses.object.ty != Type::Bool || !matches!(uses.object.class, Class::Output | Class::Memory | Class::Symbol) {
+        let is_bit = match uses.object.class {
+            Class::Output | Class::Memory => uses.object.ty == Type::Bool,
+            // Only bits are assigned conditions.
+            Class::Symbol => true,
+            _ => false,
+        };
+        if !is_bit {
             continue;
         }
         // Mixed driving is W002's affair, and a scratch value is nobody else's.
@@ -17,7 +23,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             continue;
         }
         let mut writes: Vec<GlobalUse<'_>> = uses.with_mode(Mode::assigns).copied().collect();
-        if writes.is_empty() {
+        // A bit that only takes the outputs of calls which nobody wants is a waste basket.
+        let is_sink = uses.object.class != Class::Output
+            && !uses.is_read()
+            && writes.iter().all(|it| it.mode == Mode::Output);
+        if writes.is_empty() || is_sink {
             continue;
         }
         writes.extend(covering(cx, at, uses));

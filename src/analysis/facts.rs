@@ -10,7 +10,7 @@ use crate::model::UnitModel;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
-use crate::model::unit::{Access, Callee, Mode, Pin, Section, StatementKind};
+use crate::model::unit::{Access, Call, Callee, Mode, Pin, Section, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -52,6 +52,8 @@ pub struct FactCall {
     pub conditional: bool,
     pub reachable: bool,
     pub instance: Option<BlockName>,
+    /// Place of the instance.
+    pub instance_anchor: Option<u32>,
     pub full: bool,
     /// Number of parameters given.
     pub arguments: u32,
@@ -254,10 +256,10 @@ fn same_drive(
     conditions::together(&model.exprs, &[a.0, a.1, b.0, b.1]) == conditions::Verdict::Never
 }
 
-/// Path to a write, and the condition at the instruction itself.
+/// Path to a write, and the condition at the instruction itself. A pin of a timer or counter takes 0 as well as 1: the
+/// instruction acts whatever its condition.
 fn effective(model: &UnitModel, write: (u32, &Access), path: ExprId) -> (ExprId, ExprId) {
     let when = match model.statement(write.1).map(|it| &it.kind) {
-        Some(StatementKind::Drive { when, .. }) => *when,
         Some(StatementKind::Call(call)) => model.calls.get(*call as usize).map_or(Exprs::TRUE, |it| it.when),
         _ => Exprs::TRUE,
     };
@@ -276,6 +278,11 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
             conditional: call.when != Exprs::TRUE || path(call.statement) != Exprs::TRUE,
             reachable: path(call.statement) != Exprs::FALSE && call.when != Exprs::FALSE,
             instance: call.instance.clone(),
+            instance_anchor: call
+                .instance_range
+                .zip(call.anchor.checked_add(1))
+                .filter(|(range, anchor)| model.anchors.get(*anchor as usize) == Some(range))
+                .map(|it| it.1),
             full: call.full,
             arguments: u32::try_from(call.arguments.len()).unwrap_or(u32::MAX),
         })
@@ -283,24 +290,34 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
 }
 
 fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
-    let conditional: Vec<(u32, ExprId, ExprId)> = model
+    let conditional: Vec<(u32, ExprId, &Call)> = model
         .calls
         .iter()
         .enumerate()
         .filter(|(_, call)| matches!(call.callee, Callee::Subroutine(_) | Callee::Block(_)))
         .filter_map(|(at, call)| {
             let path = model.statements.get(call.statement as usize)?.path;
-            (path != Exprs::TRUE || call.when != Exprs::TRUE).then_some((u32::try_from(at).ok()?, path, call.when))
+            (path != Exprs::TRUE || call.when != Exprs::TRUE).then_some((u32::try_from(at).ok()?, path, call))
         })
-        .take(MAX_COMPARED)
         .collect();
+    let mut by_instance: FxHashMap<&BlockName, Vec<usize>> = FxHashMap::default();
     let mut pairs = Vec::new();
-    for (at, &(b, path_b, when_b)) in conditional.iter().enumerate() {
-        for &(a, path_a, when_a) in &conditional[..at] {
-            let all = [path_a, when_a, path_b, when_b];
+    for (at, &(b, path_b, call_b)) in conditional.iter().enumerate() {
+        let same = call_b.instance.as_ref().map(|it| by_instance.entry(it).or_default());
+        let others: Vec<usize> = match &same {
+            _ if at < MAX_COMPARED => (0..at).collect(),
+            Some(list) => list.to_vec(),
+            None => Vec::new(),
+        };
+        for other in others {
+            let (a, path_a, call_a) = conditional[other];
+            let all = [path_a, call_a.when, path_b, call_b.when];
             if conditions::together(&model.exprs, &all) == conditions::Verdict::Never {
                 pairs.push((a, b));
             }
+        }
+        if let Some(same) = same.filter(|it| it.len() < MAX_COMPARED) {
+            same.push(at);
         }
     }
     pairs

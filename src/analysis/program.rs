@@ -61,7 +61,7 @@ impl<'a> ObjectUses<'a> {
     /// Whether every unit that uses the object writes it before it reads it: a scratch value that does not outlive the
     /// unit, so that units do not disturb one another through it.
     pub fn is_scratch(&self) -> bool {
-        self.object.class == Class::Memory
+        matches!(self.object.class, Class::Memory | Class::Symbol)
             && self.is_read()
             && self.uses.iter().all(|it| !it.mode.is_edge() && it.mode != Mode::EdgeMemory)
             && self.with_mode(Mode::reads).all(|it| !it.it.exposed)
@@ -82,6 +82,11 @@ impl GlobalCall<'_> {
     pub fn site(&self) -> Site {
         Site { unit: self.unit, anchor: self.it.anchor }
     }
+
+    /// Place of the instance data block; the callee's when the call names none.
+    pub fn instance_site(&self) -> Site {
+        Site { unit: self.unit, anchor: self.it.instance_anchor.unwrap_or(self.it.anchor) }
+    }
 }
 
 #[derive(Debug)]
@@ -101,6 +106,7 @@ pub struct ProgramIndex<'a> {
     /// write, a read or a call say something.
     pub complete: bool,
     exclusive: FxHashSet<(u32, u32, u32)>,
+    names: FxHashMap<UnitName, u32>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -127,7 +133,7 @@ impl<'a> ProgramIndex<'a> {
             .flat_map(|(unit, facts)| facts.exclusive_calls.iter().map(move |&(a, b)| (as_index(unit), a, b)))
             .collect();
         let objects = collect(&units, &order, &calls);
-        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive }
+        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive, names }
     }
 
     /// Whether two units can run in the same scan of the same context.
@@ -137,6 +143,15 @@ impl<'a> ProgramIndex<'a> {
         }
         let (x, y) = (&self.contexts[a as usize], &self.contexts[b as usize]);
         x.iter().any(|it| y.contains(it)) && !self.exclusive_units(a, b)
+    }
+
+    /// Whether two calls can both happen in the same scan of the same context.
+    pub fn calls_in_same_scan(&self, a: &GlobalCall<'_>, b: &GlobalCall<'_>) -> bool {
+        let (first, second) = (a.index.min(b.index), a.index.max(b.index));
+        a.it.reachable
+            && b.it.reachable
+            && self.same_scan(a.unit, b.unit)
+            && (a.unit != b.unit || !self.exclusive.contains(&(a.unit, first, second)))
     }
 
     /// Whether two units are called under conditions that exclude each other, as far as their only calls tell.
@@ -178,8 +193,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Index of the data block, FB, ... of that name.
     pub fn unit_named(&self, name: &BlockName) -> Option<u32> {
-        let at = self.units.iter().position(|it| matches!(&it.entity, Entity::Block { name: it, .. } if it == name));
-        at.map(as_index)
+        self.names.get(&UnitName::Block(name.clone())).copied()
     }
 
     /// Pairs of distinct objects that share memory, by index, the earlier address first.

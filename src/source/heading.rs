@@ -141,15 +141,15 @@ pub(super) fn pl7_heading(line: &str) -> Option<Heading> {
     if !matches!(line.as_bytes().first()? | 0x20, b's' | b'i' | b'l' | b'g') {
         return None;
     }
-    let (language, rest) = word(line);
-    let language = match language.to_ascii_uppercase().as_str() {
-        "LD" => HeadingLanguage::Ladder,
-        "IL" => HeadingLanguage::Il,
-        "ST" => HeadingLanguage::St,
-        "GR7" => HeadingLanguage::Grafcet,
-        _ => return None,
-    };
+    let (name, rest) = word(line);
     let address = rest.trim_start().strip_prefix(':')?.trim();
+    let languages = [
+        ("LD", HeadingLanguage::Ladder),
+        ("IL", HeadingLanguage::Il),
+        ("ST", HeadingLanguage::St),
+        ("GR7", HeadingLanguage::Grafcet),
+    ];
+    let (_, language) = languages.into_iter().find(|(language, _)| language.eq_ignore_ascii_case(name))?;
     if let Some(module) = strip_prefix_ignore_case(address, "PL7-2") {
         return Some(Heading { language, entity: pl7_2_entity(module)?, pl7_2: true });
     }
