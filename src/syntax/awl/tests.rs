@@ -231,10 +231,7 @@ fn structures_and_arrays() {
     let bound = |low: &str, high: &str| (low.to_owned(), high.to_owned());
     assert_eq!(array.bounds(), [bound("0", "9"), bound("-1", "+1")]);
     assert_eq!(array.type_ref().unwrap().text(), "INT");
-    assert_eq!(
-        shape(f.init().unwrap().syntax()),
-        "(InitValue := 3 ( 0 ) , 1 , 2 ( 5 , 3 ( 6 ) ) , 7)"
-    );
+    assert_eq!(shape(f.init().unwrap().syntax()), "(InitValue := 3 ( 0 ) , 1 , 2 ( 5 , 3 ( 6 ) ) , 7)");
     let inner: Vec<_> = g.struct_type().unwrap().decls().collect();
     assert_eq!(inner.len(), 2);
     assert_eq!(inner[0].array_type().unwrap().struct_type().unwrap().decls().count(), 1);
@@ -251,10 +248,8 @@ fn networks() {
         German,
     );
     let networks: Vec<_> = only_listing(&root).networks().collect();
-    let seen: Vec<_> = networks
-        .iter()
-        .map(|it| (it.header().is_some(), it.title().is_some(), it.instrs().count()))
-        .collect();
+    let seen: Vec<_> =
+        networks.iter().map(|it| (it.header().is_some(), it.title().is_some(), it.instrs().count())).collect();
     assert_eq!(
         seen,
         [(false, false, 1), (true, true, 0), (true, false, 1), (true, false, 0), (true, true, 1), (true, false, 1)]
@@ -361,9 +356,39 @@ fn operand(text: &str) -> String {
 #[test]
 fn absolute_operands_are_one_token() {
     for text in [
-        "M 0.0", "M0.0", "E 1.0", "A4.7", "I 0.0", "Q124.0", "MW 4", "MW4", "MB\t0", "MD 10", "EB0", "PEW 256", "PAD 0", "PIW 4",
-        "L 20.0", "LW 2", "LD12", "T 5", "T1", "Z 3", "C3", "DBX 0.0", "DBW 10", "DBD4", "DIB 3", "DB5.DBW0", "DB5.DBW 0",
-        "DB 5.DBX 0.7", "db1.dbx0.0", "DI 3.DIW 2", "DB 10", "FC 1", "SFB4",
+        "M 0.0",
+        "M0.0",
+        "E 1.0",
+        "A4.7",
+        "I 0.0",
+        "Q124.0",
+        "MW 4",
+        "MW4",
+        "MB\t0",
+        "MD 10",
+        "EB0",
+        "PEW 256",
+        "PAD 0",
+        "PIW 4",
+        "L 20.0",
+        "LW 2",
+        "LD12",
+        "T 5",
+        "T1",
+        "Z 3",
+        "C3",
+        "DBX 0.0",
+        "DBW 10",
+        "DBD4",
+        "DIB 3",
+        "DB5.DBW0",
+        "DB5.DBW 0",
+        "DB 5.DBX 0.7",
+        "db1.dbx0.0",
+        "DI 3.DIW 2",
+        "DB 10",
+        "FC 1",
+        "SFB4",
     ] {
         let root = clean(&format!("U {text} // x"), German);
         let operand = instrs(&root)[0].operand().unwrap();
@@ -417,15 +442,49 @@ fn indirect_operands() {
 #[test]
 fn constants_are_one_token() {
     let typed = [
-        "L#1", "L#-1100", "#1", "C#3", "S5T#10S", "S5T#1M_35S_6MS", "s5time#0h_0m", "T#1D_2H", "T#-1s100ms", "TIME#1.5s",
-        "D#2004-05-28", "DATE#1990-1-1", "TOD#13:37:13.37", "TIME_OF_DAY#0:0:0", "DT#04-5-28-10:12:25.3567",
-        "DT#04-5-28-10 :12 :25:3567", "2#0101_1111", "2#1111.1111.1111.1111", "16#FF", "B#16#5", "W#16#0FFF",
-        "dw#16#DEADBEEF", "B#(1,2,3,4)", "B#(1, 2)", "WORD#16#A", "INT#-5", "REAL#1.0e-3",
+        "L#1",
+        "L#-1100",
+        "#1",
+        "C#3",
+        "S5T#10S",
+        "S5T#1M_35S_6MS",
+        "s5time#0h_0m",
+        "T#1D_2H",
+        "T#-1s100ms",
+        "TIME#1.5s",
+        "D#2004-05-28",
+        "DATE#1990-1-1",
+        "TOD#13:37:13.37",
+        "TIME_OF_DAY#0:0:0",
+        "DT#04-5-28-10:12:25.3567",
+        "DT#04-5-28-10 :12 :25:3567",
+        "2#0101_1111",
+        "2#1111.1111.1111.1111",
+        "16#FF",
+        "B#16#5",
+        "W#16#0FFF",
+        "dw#16#DEADBEEF",
+        "B#(1,2,3,4)",
+        "B#(1, 2)",
+        "WORD#16#A",
+        "INT#-5",
+        "REAL#1.0e-3",
     ];
     let numbers = ["5", "0", "1.5", "1.22e+01", "0.000000e+000", "1E3", "1.35 E+02"];
     let pointers = [
-        "P#0.0", "P#12.7", "P#M 0.0", "P#M0.0", "P#DBX 0.0", "P#E 10.0", "P#P 1.1", "P#DB1.DBX0.0 BYTE 10",
-        "P#DB 1.DBX 0.0 BYTE 10", "p#m 50.0 word 3", "P#L 0.0", "P#I1000.0 BYTE 12", "P#T 3",
+        "P#0.0",
+        "P#12.7",
+        "P#M 0.0",
+        "P#M0.0",
+        "P#DBX 0.0",
+        "P#E 10.0",
+        "P#P 1.1",
+        "P#DB1.DBX0.0 BYTE 10",
+        "P#DB 1.DBX 0.0 BYTE 10",
+        "p#m 50.0 word 3",
+        "P#L 0.0",
+        "P#I1000.0 BYTE 12",
+        "P#T 3",
     ];
     let all = typed.iter().map(|it| (it, SyntaxKind::TypedConstant));
     let all = all.chain(numbers.iter().map(|it| (it, SyntaxKind::Number)));
@@ -479,8 +538,11 @@ fn signs_are_mnemonics_or_operands() {
 #[test]
 fn optional_operands() {
     assert_eq!(
-        code("O\nSLW 5\nSLW\nUW\nUW W#16#0FFF\nLAR1\nLAR1 AR2\nTAR1 MD 0\nNOP 0\nNOP0\nBLD 103\nRND+\nINC 1\nL T 1", German)
-            .len(),
+        code(
+            "O\nSLW 5\nSLW\nUW\nUW W#16#0FFF\nLAR1\nLAR1 AR2\nTAR1 MD 0\nNOP 0\nNOP0\nBLD 103\nRND+\nINC 1\nL T 1",
+            German
+        )
+        .len(),
         13 + 1
     );
 }
@@ -511,7 +573,9 @@ fn every_instruction_in_both_sets() {
             assert_eq!(instr.operands().count(), usize::from(!operand.is_empty()));
         }
     }
-    for (word, english, german) in [("SE", true, true), ("A", true, false), ("U", false, true), ("XYZ", false, false), ("", false, false)] {
+    for (word, english, german) in
+        [("SE", true, true), ("A", true, false), ("U", false, true), ("XYZ", false, false), ("", false, false)]
+    {
         assert_eq!((lookup(word, English).is_some(), lookup(word, German).is_some()), (english, german), "{word}");
     }
     assert_ne!(lookup("SE", English), lookup("SE", German));
@@ -568,7 +632,8 @@ fn calls() {
 #[test]
 fn jump_list() {
     let text = "L MB 0\nSPL def\nSPA m0\nSPA m1\ndef: SPA m1\nm0: NOP 0\nm1: BE";
-    let labels: Vec<_> = instrs(&clean(text, German)).iter().filter_map(|it| it.operand().map(|it| it.text())).collect();
+    let labels: Vec<_> =
+        instrs(&clean(text, German)).iter().filter_map(|it| it.operand().map(|it| it.text())).collect();
     assert_eq!(labels, ["MB 0", "def", "m0", "m1", "m1", "0"]);
 }
 
@@ -677,15 +742,30 @@ fn faults_of_declarations() {
 fn faults_of_blocks() {
     for (text, expected) in [
         ("FUNCTION FC 1\nBEGIN\nEND_FUNCTION", "FC 1: expected `:` and the type of the return value, such as `: VOID`"),
-        ("FUNCTION_BLOCK FB 1\nBEGIN\nSET", "FUNCTION_BLOCK: this `FUNCTION_BLOCK` is not closed: expected `END_FUNCTION_BLOCK`"),
+        (
+            "FUNCTION_BLOCK FB 1\nBEGIN\nSET",
+            "FUNCTION_BLOCK: this `FUNCTION_BLOCK` is not closed: expected `END_FUNCTION_BLOCK`",
+        ),
         ("FUNCTION_BLOCK FB 1\nBEGIN\nEND_FUNCTION", "END_FUNCTION: expected `END_FUNCTION_BLOCK`"),
-        ("FUNCTION_BLOCK FB 1\nU E 0.0\n= A 4.0\nEND_FUNCTION_BLOCK", "U: expected `BEGIN` before the code of the block"),
+        (
+            "FUNCTION_BLOCK FB 1\nU E 0.0\n= A 4.0\nEND_FUNCTION_BLOCK",
+            "U: expected `BEGIN` before the code of the block",
+        ),
         ("FUNCTION_BLOCK FB 1\nhello world\nBEGIN\nEND_FUNCTION_BLOCK", "hello: expected a declaration or `BEGIN`"),
-        ("FUNCTION_BLOCK FB 1\nVAR\n a : INT;\nBEGIN\nSET\nEND_FUNCTION_BLOCK", "VAR: this `VAR` is not closed: expected `END_VAR`"),
+        (
+            "FUNCTION_BLOCK FB 1\nVAR\n a : INT;\nBEGIN\nSET\nEND_FUNCTION_BLOCK",
+            "VAR: this `VAR` is not closed: expected `END_VAR`",
+        ),
         ("DATA_BLOCK DB 1\nBEGIN\n a 5;\n b := 1;\nEND_DATA_BLOCK", "5: expected `:=` and a value"),
         ("DATA_BLOCK DB 1\nBEGIN\n := 5;\n b := 1;\nEND_DATA_BLOCK", ":=: expected an assignment such as `name := 5;`"),
-        ("DATA_BLOCK DB 1\nSTRUCT\n a : STRUCT\n b : INT;\nEND_STRUCT;\nBEGIN\nEND_DATA_BLOCK", "STRUCT: this `STRUCT` is not closed: expected `END_STRUCT`"),
-        ("FUNCTION_BLOCK FB 1\n{ a := 1\nBEGIN\nSET\nEND_FUNCTION_BLOCK", "{: this attribute is not closed: expected `}`"),
+        (
+            "DATA_BLOCK DB 1\nSTRUCT\n a : STRUCT\n b : INT;\nEND_STRUCT;\nBEGIN\nEND_DATA_BLOCK",
+            "STRUCT: this `STRUCT` is not closed: expected `END_STRUCT`",
+        ),
+        (
+            "FUNCTION_BLOCK FB 1\n{ a := 1\nBEGIN\nSET\nEND_FUNCTION_BLOCK",
+            "{: this attribute is not closed: expected `}`",
+        ),
     ] {
         let whole = format!("{text}\nFUNCTION FC 9 : VOID\nBEGIN\nEND_FUNCTION");
         let (root, found) = root_of(&whole, German);
@@ -720,7 +800,8 @@ fn depth_is_limited() {
     let section = root.blocks().next().unwrap().sections().next().unwrap();
     assert_eq!(decls(&section).pop().unwrap().names().next().unwrap().text(), "z");
 
-    let text = format!("DATA_BLOCK DB 1\nSTRUCT\na : {} INT;\nEND_STRUCT\nEND_DATA_BLOCK", "ARRAY [1..2] OF ".repeat(depth));
+    let text =
+        format!("DATA_BLOCK DB 1\nSTRUCT\na : {} INT;\nEND_STRUCT\nEND_DATA_BLOCK", "ARRAY [1..2] OF ".repeat(depth));
     assert_eq!(faults(&text, German).len(), 1);
     let text = text.replace(" INT;", " INT\n b : INT\n");
     assert_eq!(faults(&text, German).len(), 1);
