@@ -33,9 +33,8 @@ pub fn conflict<'a>(
     const MAX_COMPARED: usize = 256;
     let uses: Vec<GlobalUse<'a>> = uses.iter().filter(|it| !program.is_startup(it.unit)).copied().collect();
     let compared = &uses[..uses.len().min(MAX_COMPARED)];
-    let at = (1..compared.len()).find(|&at| {
-        compared[..at].iter().any(|it| opposed(it, &compared[at]) && program.clash(it, &compared[at]))
-    })?;
+    let at = (1..compared.len())
+        .find(|&at| compared[..at].iter().any(|it| opposed(it, &compared[at]) && program.clash(it, &compared[at])))?;
     let others = uses.iter().enumerate().filter(|it| it.0 != at).map(|it| *it.1).collect();
     Some((uses[at], others))
 }
