@@ -1,1 +1,114 @@
-fn main() {}
+//! Speed of each stage on generated programs of 1, 10 and 100 MB, and of an edit in a 1 MB file.
+//!
+//! `cargo bench --bench pipeline` measures all; `cargo bench --bench pipeline -- parse` one group. The table of
+//! `docs/performance.md` is made from it.
+
+mod generator;
+
+use std::hint::black_box;
+
+use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use plclint::db::{self, Input, RootDatabase};
+use plclint::lint::settings::Settings;
+use plclint::source::detect::{Detected, Dialect};
+use plclint::source::split::{self, SplitHint};
+use plclint::syntax;
+
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
+const SIZES: [(&str, usize); 3] = [("1 MB", 1_000_000), ("10 MB", 10_000_000), ("100 MB", 100_000_000)];
+
+fn texts(bytes: usize) -> [(&'static str, String, Detected); 2] {
+    let pl7 = generator::pl7(bytes, 7);
+    let detected = Input::from_text("bench.txt", &pl7[..10_000.min(pl7.len())], Dialect::Pl7).detected;
+    [("step7", generator::step7(bytes, 42), Detected::Step7), ("pl7", pl7, detected)]
+}
+
+/// Lexing, parsing and building the trees of all units of a file.
+fn parse(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("lex and parse");
+    group.sample_size(10).sampling_mode(SamplingMode::Flat);
+    for (size, bytes) in SIZES {
+        for (name, text, detected) in texts(bytes) {
+            group.throughput(Throughput::Bytes(text.len() as u64));
+            let units = split::split(&text, detected, &SplitHint::default());
+            group.bench_function(BenchmarkId::new(name, size), |bencher| {
+                bencher.iter_with_large_drop(|| {
+                    let parse = |range: std::ops::Range<usize>, language| syntax::parse(language, &text[range]);
+                    units.iter().map(|it| parse(it.range.into(), it.language)).collect::<Vec<_>>()
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// Finding the units of a file: what runs over the whole text at each edit.
+fn split(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("split");
+    group.sample_size(10).sampling_mode(SamplingMode::Flat);
+    for (name, text, detected) in texts(10_000_000) {
+        group.throughput(Throughput::Bytes(text.len() as u64));
+        group.bench_function(BenchmarkId::new(name, "10 MB"), |bencher| {
+            bencher.iter(|| split::split(black_box(&text), detected, &SplitHint::default()).len());
+        });
+    }
+    group.finish();
+}
+
+/// The whole cold check with all rules, on one thread.
+fn check(criterion: &mut Criterion) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
+    let mut group = criterion.benchmark_group("check, one thread");
+    group.sample_size(10).sampling_mode(SamplingMode::Flat);
+    for (size, bytes) in SIZES {
+        for (name, text, detected) in texts(bytes) {
+            group.throughput(Throughput::Bytes(text.len() as u64));
+            let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
+            input.source.text = text.into();
+            input.detected = detected;
+            group.bench_function(BenchmarkId::new(name, size), |bencher| {
+                bencher.iter_batched(
+                    || vec![input.clone()],
+                    |inputs| pool.install(|| db::check(inputs, Settings::default()).diagnostics.len()),
+                    BatchSize::PerIteration,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+/// One network of a 1 MB file is edited; all findings of the file are asked for again.
+fn edit(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("edit to findings");
+    for (name, text, detected) in texts(1_000_000) {
+        let (from, others) = if name == "step7" {
+            ("U     E ", ["U     E 1", "UN    E "])
+        } else {
+            ("INC %MW", ["INC %MW1", "DEC %MW"])
+        };
+        let middle = text.len() / 2 + text[text.len() / 2..].find(from).expect("the text has such a place");
+        let variants: Vec<String> =
+            others.iter().map(|to| format!("{}{to}{}", &text[..middle], &text[middle + from.len()..])).collect();
+        let mut db = RootDatabase::new(Settings::default(), None);
+        let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
+        input.source.text = text.into();
+        input.detected = detected;
+        let file = db.set_files([input])[0];
+        db::file_findings(&db, file);
+        let mut turn = 0;
+        group.bench_function(BenchmarkId::new(name, "1 MB file"), |bencher| {
+            bencher.iter(|| {
+                turn = 1 - turn;
+                db.set_text(file, variants[turn].as_str());
+                db::file_findings(&db, file).len()
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, split, parse, edit, check);
+criterion_main!(benches);

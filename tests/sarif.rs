@@ -65,7 +65,6 @@ fn the_same_program_gives_the_same_bytes() {
 }
 
 #[test]
-#[ignore = "needs the database behind `check`"]
 fn results_point_at_their_rule_and_file() {
     let log: Value = serde_json::from_str(&check(&project())).expect("JSON");
     let run = &log["runs"][0];

@@ -4,13 +4,16 @@ use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::ValueEnum;
+use rustc_hash::FxHashMap;
 
 use super::config::{Loader, Source};
-use super::{Colour, Exit, Failure, dialect, print};
+use super::{Colour, Exit, Failure, dialect, print, read};
+use crate::db;
 use crate::lint::settings::Overrides;
-use crate::lint::{Outcome, Settings, Severity};
+use crate::lint::{Diagnostic, Location, Outcome, Settings, Severity, SourceView};
 use crate::report::{self, Format, Options, Summary};
 use crate::source::detect::Dialect;
 
@@ -109,40 +112,77 @@ fn output(text: &str) -> Result<Output, String> {
     Ok(Output { format: None, path: text.into() })
 }
 
-/// What to lint.
-#[expect(dead_code, reason = "read once the database is wired")]
-pub(super) struct Request {
-    pub(super) roots: Vec<Root>,
-    pub(super) stdin: Option<Stdin>,
-    pub(super) dialect: Dialect,
-    /// `None`: one for each processor.
-    pub(super) threads: Option<NonZeroUsize>,
+/// What to check: the paths that share their settings, and standard input.
+struct Group {
+    settings: Settings,
+    paths: Vec<PathBuf>,
+    stdin: Option<(String, Vec<u8>)>,
 }
 
-/// A file or folder that the user named, with the settings that hold for it and for what is in it.
-#[expect(dead_code, reason = "read once the database is wired")]
-pub(super) struct Root {
-    pub(super) path: PathBuf,
-    pub(super) settings: Settings,
+/// Reads and checks; each group is checked on its own.
+fn lint(groups: Vec<Group>, dialect: Dialect, threads: Option<NonZeroUsize>) -> Result<Outcome, Failure> {
+    let start = Instant::now();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get)).build();
+    let pool = pool.map_err(|it| Failure::Usage(format!("the threads do not start: {it}")))?;
+    let check = |group: Group| {
+        let mut files = read::read(&group.paths, &group.settings, dialect);
+        if let Some((name, bytes)) = group.stdin {
+            let it = read::from_bytes(&name, &bytes, &group.settings, dialect);
+            files.inputs.extend(it.inputs);
+            files.unread.extend(it.unread);
+        }
+        let mut outcome = db::check(files.inputs, group.settings);
+        outcome.unread.extend(files.unread);
+        outcome
+    };
+    let outcomes = pool.install(|| groups.into_iter().map(check).collect());
+    let mut outcome = merge(outcomes);
+    outcome.unread.sort_by(|l, r| l.path.cmp(&r.path));
+    outcome.unread.dedup_by(|l, r| l.path == r.path);
+    outcome.elapsed = start.elapsed();
+    Ok(outcome)
 }
 
-/// What came through standard input.
-#[expect(dead_code, reason = "read once the database is wired")]
-pub(super) struct Stdin {
-    pub(super) name: String,
-    pub(super) bytes: Vec<u8>,
-    pub(super) settings: Settings,
-}
-
-/// Lints. The one place where the command line meets the rest of the program.
-fn lint(request: Request) -> Outcome {
-    // To be wired: walk `roots`, read, and hand all to `crate::db::check`.
-    let Request { roots, stdin, dialect: _, threads: _ } = request;
-    let settings = roots.iter().map(|it| &it.settings).chain(stdin.iter().map(|it| &it.settings));
-    let mut active: Vec<_> = settings.flat_map(Settings::active).collect();
-    active.sort_by_key(|it| it.code);
-    active.dedup_by_key(|it| it.code);
-    Outcome { active, ..Outcome::default() }
+/// The outcomes of groups as one. Of a file that two groups read, the first one's findings count.
+fn merge(mut outcomes: Vec<Outcome>) -> Outcome {
+    if outcomes.len() <= 1 {
+        return outcomes.pop().unwrap_or_default();
+    }
+    let mut files: Vec<(usize, usize, SourceView)> = Vec::new();
+    for (group, outcome) in outcomes.iter_mut().enumerate() {
+        files.extend(std::mem::take(&mut outcome.files).into_iter().enumerate().map(|(at, it)| (group, at, it)));
+    }
+    files.sort_by(|l, r| (&l.2.path, l.0).cmp(&(&r.2.path, r.0)));
+    let mut merged = Outcome::default();
+    // Where each file of each group went, and whether its findings count.
+    let mut places: FxHashMap<(usize, usize), (u32, bool)> = FxHashMap::default();
+    for (group, at, file) in files {
+        let first = merged.files.last().is_none_or(|it| it.path != file.path);
+        if first {
+            merged.files.push(file);
+        }
+        let index = u32::try_from(merged.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        places.insert((group, at), (index, first));
+    }
+    for (group, outcome) in outcomes.into_iter().enumerate() {
+        let place = |file: u32| places.get(&(group, file as usize)).copied();
+        for it in outcome.diagnostics {
+            if !place(it.finding.place.file).is_some_and(|it| it.1) {
+                continue;
+            }
+            let name = |location: Location| place(location.file).map(|it| Location { file: it.0, ..location });
+            let (entity, suppressed) = (it.entity, it.suppressed);
+            merged.diagnostics.extend(it.finding.map(name).map(|finding| Diagnostic { finding, entity, suppressed }));
+        }
+        merged.unread.extend(outcome.unread);
+        merged.active.extend(outcome.active);
+        merged.internal_errors.extend(outcome.internal_errors);
+    }
+    // The findings of a file all come from one group, in order.
+    merged.diagnostics.sort_by_key(|it| it.finding.place.file);
+    merged.active.sort_by_key(|it| it.code);
+    merged.active.dedup_by_key(|it| it.code);
+    merged
 }
 
 pub(super) fn run(mut arguments: Arguments, colour: Colour) -> Result<Exit, Failure> {
@@ -160,16 +200,14 @@ pub(super) fn run(mut arguments: Arguments, colour: Colour) -> Result<Exit, Fail
         encoding: arguments.encoding.take(),
     };
     let mut loader = Loader::new(source, overrides)?;
-    let request = request(&arguments, &mut loader)?;
-    let outcome = lint(request);
+    let groups = groups(&arguments, &mut loader)?;
+    let outcome = lint(groups, arguments.dialect, arguments.threads)?;
     let options = Options { colour: false, root: Some(loader.current().to_owned()) };
     report(&arguments, &outcome, &options, colour)?;
     Ok(exit(&outcome, arguments.exit_zero, arguments.max_warnings))
 }
 
-fn request(arguments: &Arguments, loader: &mut Loader) -> Result<Request, Failure> {
-    let mut request =
-        Request { roots: Vec::new(), stdin: None, dialect: arguments.dialect, threads: arguments.threads };
+fn groups(arguments: &Arguments, loader: &mut Loader) -> Result<Vec<Group>, Failure> {
     let is_stdin = |it: &PathBuf| it.as_os_str() == "-";
     if arguments.paths.iter().any(is_stdin) {
         if arguments.paths.len() > 1 {
@@ -182,22 +220,26 @@ fn request(arguments: &Arguments, loader: &mut Loader) -> Result<Request, Failur
             .lock()
             .read_to_end(&mut bytes)
             .map_err(|it| Failure::Usage(format!("standard input cannot be read: {it}")))?;
-        request.stdin = Some(Stdin { name, bytes, settings });
-        return Ok(request);
+        return Ok(vec![Group { settings, paths: Vec::new(), stdin: Some((name, bytes)) }]);
     }
     if arguments.stdin_filename.is_some() {
         return Err(Failure::Usage("--stdin-filename names what `-` reads: give `-` as the path".to_owned()));
     }
     let current = [PathBuf::from(".")];
     let paths = if arguments.paths.is_empty() { &current[..] } else { &arguments.paths };
+    let mut groups: Vec<Group> = Vec::new();
     for path in paths {
         // A name that is mistyped is wrong usage; a file that cannot be read is a line of the report.
         if let Ok(false) = path.try_exists() {
             return Err(Failure::Usage(format!("{}: there is no such file or folder", path.display())));
         }
-        request.roots.push(Root { path: path.clone(), settings: loader.settings(path)? });
+        let settings = loader.settings(path)?;
+        match groups.iter_mut().find(|it| it.settings == settings) {
+            Some(group) => group.paths.push(path.clone()),
+            None => groups.push(Group { settings, paths: vec![path.clone()], stdin: None }),
+        }
     }
-    Ok(request)
+    Ok(groups)
 }
 
 fn report(arguments: &Arguments, outcome: &Outcome, options: &Options, colour: Colour) -> Result<(), Failure> {
@@ -295,6 +337,20 @@ mod tests {
         outcome.internal_errors.push("J001".into());
         assert_eq!(exit(&outcome, true, None), Exit::Internal);
         assert_eq!(exit(&Outcome::default(), false, None), Exit::Clean);
+    }
+
+    #[test]
+    fn groups_are_reported_as_one() {
+        let one = sample();
+        let mut other = sample();
+        other.files[1].path = "line0/z.awl".into();
+        let merged = merge(vec![sample(), other]);
+        let paths: Vec<&str> = merged.files.iter().map(|it| it.path.as_str()).collect();
+        assert_eq!(paths, ["line0/z.awl", "line1/a b.awl", "line1/b.awl"]);
+        let places: Vec<u32> = merged.diagnostics.iter().map(|it| it.finding.place.file).collect();
+        assert_eq!(places, [0, 0, 0, 1, 1, 2, 2, 2], "a file that both have counts once");
+        assert_eq!(merged.diagnostics[3].finding.related[0].place.file, 2);
+        assert_eq!(merged.active.len(), one.active.len());
     }
 
     #[test]

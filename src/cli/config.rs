@@ -93,19 +93,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path().canonicalize().unwrap();
         fs::create_dir_all(root.join("a/b")).unwrap();
-        fs::write(root.join(FILE_NAME), "[target]\ncontroller = 'outer'").unwrap();
-        fs::write(root.join("a").join(FILE_NAME), "[target]\ncontroller = 'inner'").unwrap();
+        fs::write(root.join(FILE_NAME), "[target]\ncontroller = 'CPU 314'").unwrap();
+        fs::write(root.join("a").join(FILE_NAME), "[target]\ncontroller = 'TSX 37-22'").unwrap();
         fs::write(root.join("a/b/x.awl"), "").unwrap();
         let mut it = loader(Source::Discover, &root);
-        assert_eq!(it.settings(Path::new("a/b/x.awl")).unwrap().controller(), Some("inner"));
-        assert_eq!(it.settings(Path::new("a/b")).unwrap().controller(), Some("inner"));
-        assert_eq!(it.settings(Path::new(".")).unwrap().controller(), Some("outer"));
+        assert_eq!(it.settings(Path::new("a/b/x.awl")).unwrap().controller(), Some("TSX 37-22"));
+        assert_eq!(it.settings(Path::new("a/b")).unwrap().controller(), Some("TSX 37-22"));
+        assert_eq!(it.settings(Path::new(".")).unwrap().controller(), Some("CPU 314"));
         assert_eq!(it.loaded.len(), 2, "each file is read once");
         assert_eq!(loader(Source::Isolated, &root).settings(Path::new("a")).unwrap().controller(), None);
         let mut given = loader(Source::File("a/plclint.toml".into()), &root);
         // Read from the working folder of the process, which is not the test's: an absolute path is needed.
         given.source = Source::File(root.join("a").join(FILE_NAME));
-        assert_eq!(given.settings(Path::new(".")).unwrap().controller(), Some("inner"));
+        assert_eq!(given.settings(Path::new(".")).unwrap().controller(), Some("TSX 37-22"));
     }
 
     #[test]

@@ -11,6 +11,7 @@ use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 mod check;
 mod completions;
 mod config;
+mod read;
 mod rule;
 mod rules;
 mod tree;

@@ -106,7 +106,17 @@ pub fn find(code_or_name: &str) -> Option<&'static Rule> {
     rules().iter().find(|it| it.code.eq_ignore_ascii_case(code_or_name) || it.name.eq_ignore_ascii_case(code_or_name))
 }
 
+/// More places than this are counted, not shown.
+const MAX_RELATED: usize = 20;
+
 /// Runs one rule over one thing.
 pub(crate) fn run<P>(rule: &'static Rule, findings: &mut Vec<Finding<P>>, check: impl FnOnce(&mut Sink<'_, P>)) {
+    let before = findings.len();
     check(&mut Sink { rule, findings });
+    for finding in findings.iter_mut().skip(before) {
+        if finding.related.len() > MAX_RELATED {
+            finding.notes.push(format!("{} more places are not shown", finding.related.len() - MAX_RELATED));
+            finding.related.truncate(MAX_RELATED);
+        }
+    }
 }

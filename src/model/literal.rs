@@ -72,6 +72,21 @@ pub fn s5time_encoding(milliseconds: u64) -> S5Encoding {
     S5Encoding { base_ms, count, represented_ms: count * base_ms }
 }
 
+/// The longest-unit-first spelling of a duration: `S5T#1M_35S`.
+pub fn s5time_text(milliseconds: u64) -> String {
+    let units = [("H", 3_600_000), ("M", 60_000), ("S", 1_000), ("MS", 1)];
+    let mut rest = milliseconds;
+    let mut parts = Vec::new();
+    for (unit, length) in units {
+        let count = rest / length;
+        rest %= length;
+        if count > 0 {
+            parts.push(format!("{count}{unit}"));
+        }
+    }
+    if parts.is_empty() { "S5T#0MS".to_owned() } else { format!("S5T#{}", parts.join("_")) }
+}
+
 /// What a timer reads in a word loaded as its duration, as in `L W#16#2009` (S7:581-587). `None` when a digit is not
 /// decimal. Bits 14 and 15 are not used (S7:570).
 pub fn s5time_from_word(word: u16) -> Option<S5Encoding> {
@@ -525,6 +540,16 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn durations_are_spelled_as_they_are_read() {
+        for (milliseconds, text) in
+            [(0, "S5T#0MS"), (95_000, "S5T#1M_35S"), (S5TIME_MAX_MS, "S5T#2H_46M_30S"), (3_600_010, "S5T#1H_10MS")]
+        {
+            assert_eq!(s5time_text(milliseconds), text);
+            assert_eq!(parse_step7(text), Ok(Value::S5Time { milliseconds }), "{text}");
+        }
+    }
 
     fn int(value: i64, ty: IntType) -> Value {
         Value::Int { value, ty }

@@ -101,7 +101,7 @@ impl Summary {
         if self.unreadable > 0 {
             left_out.push(format!("{} unreadable", grouped(self.unreadable)));
         }
-        left_out.extend(self.unsupported.iter().map(|(kind, count)| format!("{} {kind}", grouped(*count))));
+        left_out.extend(self.unsupported.iter().map(|(kind, count)| format!("{} × {kind}", grouped(*count))));
         if self.not_plc > 0 {
             left_out.push(format!("{} not PLC programs", grouped(self.not_plc)));
         }
@@ -166,7 +166,7 @@ mod tests {
     fn a_run_is_told_in_one_line() {
         insta::assert_snapshot!(
             Summary::of(&sample()).line(Some(Duration::from_millis(1234))),
-            @"2 files, 4 programs and blocks, 10 lines read in 1.23 s, 100 % understood; 2 errors, 1 warning, 1 note (1 suppressed); left out: 1 unreadable, 1 PL7 ladder (.LD), 1 not PLC programs"
+            @"2 files, 4 programs and blocks, 10 lines read in 1.23 s, 100 % understood; 2 errors, 1 warning, 1 note (1 suppressed); left out: 1 unreadable, 1 × PL7 ladder (.LD), 1 not PLC programs"
         );
         insta::assert_snapshot!(Summary::of(&empty()).line(None), @"0 files, 0 programs and blocks, 0 lines read; no findings");
     }

@@ -8,7 +8,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use memchr::memchr;
+use memchr::{memchr, memchr2, memchr3, memchr3_iter};
 
 /// How the characters of a file are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -203,7 +203,7 @@ fn decode_as(bytes: &[u8], encoding: Encoding) -> (Arc<str>, bool) {
     // The encoding standard gives a meaning to the five bytes that Windows-1252, and the one that Windows-1251 leaves
     // undefined.
     let undefined = match encoding {
-        Encoding::Windows1252 => bytes.iter().any(|byte| matches!(byte, 0x81 | 0x8d | 0x8f | 0x90 | 0x9d)),
+        Encoding::Windows1252 => memchr3(0x81, 0x8d, 0x8f, bytes).is_some() || memchr2(0x90, 0x9d, bytes).is_some(),
         Encoding::Windows1251 => memchr(0x98, bytes).is_some(),
         _ => false,
     };
@@ -222,8 +222,10 @@ fn decode_table(bytes: &[u8], upper: &[char; 128]) -> Arc<str> {
 /// Whether bytes that are not valid UTF-8 hold sequences that can hardly be anything else: Latin-1 letters, no-break
 /// space, guillemets and general punctuation stored as UTF-8. As Windows-1252 these would read `Ã©`, `Â«`, `â€™`.
 fn mixes_utf8(bytes: &[u8]) -> bool {
-    bytes.utf8_chunks().any(|chunk| {
-        chunk.valid().chars().any(|character| matches!(character, '\u{a0}'..='\u{ff}' | '\u{2010}'..='\u{203a}'))
+    memchr3_iter(0xc2, 0xc3, 0xe2, bytes).any(|at| match bytes.get(at..) {
+        Some([0xc2, 0xa0..=0xbf, ..] | [0xc3, 0x80..=0xbf, ..]) => true,
+        Some([0xe2, 0x80, last @ 0x80..=0xbf, ..]) => (0x90..=0xba).contains(last),
+        _ => false,
     })
 }
 

@@ -274,11 +274,13 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
     if tally.is_exchange() || of_pl7 && tally.blocks > 0 {
         return Detected::Exchange;
     }
-    if let Some(detected) = tally.prove() {
+    if !matches!(extension, Extension::Form(..))
+        && let Some(detected) = tally.prove()
+    {
         return detected;
     }
 
-    let weak = tally.code_lines() * 5 >= tally.lines && tally.code_lines() > 0;
+    let weak = tally.code_lines() > 0 && tally.code_lines() * 5 >= tally.lines && tally.prose * 3 <= tally.lines;
     match extension {
         Extension::Form(_, Storage::Binary) => Detected::NotPlc,
         Extension::Form(unsupported::CONTROL_EXPERT, _) if !tally.markup => Detected::NotPlc,
@@ -297,7 +299,7 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Unsupported { what: unsupported::GRAFCET },
         Extension::Sfc if tally.chart > 0 => Detected::Unsupported { what: unsupported::SFC },
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
-        Extension::Other if explicit && weak && tally.prose == 0 => {
+        Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
                 Detected::Step7
             } else {
@@ -317,6 +319,8 @@ struct Tally {
     lines: u32,
     /// STEP 7 instructions with an operand of the right shape, or none where none is due.
     step7: u32,
+    /// The same with an operand that may be a symbol without quotes.
+    step7_symbols: u32,
     /// PL7 instructions in IL; the same in ST.
     il: u32,
     st: u32,
@@ -365,7 +369,8 @@ impl Tally {
         // A line comment is none in PL7, but no PL7 text has `//` outside of comments.
         for line in Lines::new(text, Comments::Step7) {
             let code = line.code.split("//").next().unwrap_or_default().trim();
-            if !code.is_empty() {
+            // Parentheses and the dots of an omission alone mean nothing.
+            if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) {
                 tally.add(code);
             }
         }
@@ -427,6 +432,7 @@ impl Tally {
             | "REPEAT" | "END_REPEAT" | "REGION" => self.scl += 1,
             _ if is_step5(code) => self.step5 += 1,
             _ if is_step7_instruction(code) => self.step7 += 1,
+            _ if is_step7_with_symbol(code) => self.step7_symbols += 1,
             _ if is_declaration(code) => self.declarations += 1,
             _ if !is_pl7 && is_prose(code) => self.prose += 1,
             _ => {}
@@ -473,15 +479,19 @@ impl Tally {
             return Some(Detected::Unsupported { what: unsupported::STEP5 });
         }
         let most = |count: u32| count * 5 >= lines * 3;
+        let enough = |count: u32| count > 2 || count > 1 && count == lines;
         if self.rung > 1 && most(self.rung + self.il) {
             return Some(Detected::Unsupported { what: unsupported::LADDER });
         }
         let step7 = self.step7 + if self.step7 > 0 { self.declarations } else { 0 };
-        if self.step7 > 2 && most(step7) && self.step7 > self.il + self.st {
+        if enough(self.step7) && most(step7) && self.step7 > self.il + self.st {
+            return Some(Detected::Step7);
+        }
+        if self.step7 > 0 && self.step7_symbols > 2 && (self.step7 + self.step7_symbols) * 5 >= lines * 4 {
             return Some(Detected::Step7);
         }
         let structure = if self.st > 0 { self.scl } else { 0 };
-        if self.pl7 > 2 && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
+        if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
         None
@@ -618,6 +628,19 @@ fn is_step7_instruction(line: &str) -> bool {
     }
 }
 
+/// Whether a line is a bit instruction on a bare name, as documents print them: `U Sto`, `UN T2p[21]`.
+fn is_step7_with_symbol(line: &str) -> bool {
+    let (mnemonic, operand) = match line.strip_prefix('=') {
+        Some(operand) => ("=", operand),
+        None => word(line),
+    };
+    let (_, rest) = word(operand.trim_start());
+    let index = rest.strip_prefix('[').map_or(Some(rest), |index| index.split_once(']').map(|(_, rest)| rest));
+    ["U", "UN", "A", "AN", "O", "ON", "X", "XN", "S", "R", "="].contains(&mnemonic)
+        && operand.starts_with([' ', '\t'])
+        && index.is_some_and(|rest| matches!(rest.trim(), "" | ";"))
+}
+
 /// What follows `M001:`. A label alone is left as it is.
 fn strip_step7_label(line: &str) -> &str {
     let (label, rest) = word(line);
@@ -738,11 +761,204 @@ fn is_prose(line: &str) -> bool {
     }
     let (mut words, mut natural) = (0, 0);
     for word in line.split_whitespace().take(24) {
-        let letters = word.trim_matches(|c: char| !c.is_alphanumeric());
+        let letters = word.trim_matches(['.', ',', ';', ':', '!', '?', '(', ')', '«', '»', '"']);
+        let is_natural = letters.contains(char::is_lowercase)
+            && letters.chars().all(|c| c.is_alphabetic() || matches!(c, '\'' | '’' | '-'));
         words += 1;
-        natural += u32::from(
-            !letters.is_empty() && letters.chars().all(|c| c.is_alphabetic() || matches!(c, '\'' | '’' | '-')),
-        );
+        natural += u32::from(is_natural);
     }
-    words >= 4 && natural * 4 >= words * 3 && !line.contains(":=")
+    words >= 4 && natural * 3 >= words * 2 && !line.contains(":=")
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const STEP7: Detected = Detected::Step7;
+    const IL: Detected = Detected::Pasted(Pl7Text::Il);
+    const ST: Detected = Detected::Pasted(Pl7Text::St);
+
+    fn unsupported(what: &'static str) -> Detected {
+        Detected::Unsupported { what }
+    }
+
+    fn hint(path: &str) -> FileHint<'_> {
+        FileHint { path: Some(Path::new(path)), ..FileHint::default() }
+    }
+
+    #[track_caller]
+    fn check(path: &str, text: &str, expected: Detected) {
+        assert_eq!(load(hint(path), text.as_bytes(), None).1, expected, "{path}: {text}");
+    }
+
+    const SOURCE: &str = "FUNCTION FC 1 : VOID\nTITLE = x\nBEGIN\nNETWORK\n  U E 0.0;\n  = A 4.0;\nEND_FUNCTION\n";
+    const LISTING: &str = "U     « X0 »   //si l'on est en X0\nL     S5T#1S\nSE    « temp01 »\n...\nBE\n";
+    const PL7_ST: &str = "! (*Comptage*)\nIF %M0 AND %M12 THEN\n  INC %MW4;\nEND_IF;\n%MW10:=%MW8+%MW9;\n";
+    const PL7_IL: &str = "! %L2:\n  LD %I1.0\n  AND %M10\n  ST %Q2.5\n";
+    const RUNG: &str = "RUNG (*fill*) %L10:\nOPEN_CONTACT(%I1.0),H_LINK(9),COIL(%Q2.0);\nEND_RUNG\n";
+
+    #[test]
+    fn content_is_recognised_in_any_file() {
+        for path in ["a.txt", "a.awl", "a.stl", "a.il", "a.ST"] {
+            check(path, SOURCE, STEP7);
+            check(path, LISTING, STEP7);
+            check(path, PL7_ST, ST);
+            check(path, PL7_IL, IL);
+            check(path, "[HEADER]\nDATE = date#2024-03-01\n[SOURCE_UNIT]\n", Detected::Exchange);
+            check(
+                path,
+                "FUNCTION FC 1 : VOID\nBEGIN\nIF #a THEN\n#b := 1;\nEND_IF;\nEND_FUNCTION",
+                unsupported(unsupported::SCL),
+            );
+            check(
+                path,
+                "FUNCTION_BLOCK \"f\"\nBEGIN\n  \"x\" := 1;\n y := 2;\nEND_FUNCTION_BLOCK",
+                unsupported(unsupported::SCL),
+            );
+            check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", unsupported(unsupported::STEP5));
+            check(path, RUNG, unsupported(unsupported::LADDER));
+        }
+        check("a.txt", "DATA_BLOCK DB 1\nSTRUCT\n a : INT;\nEND_STRUCT;\nBEGIN\n a := 1;\nEND_DATA_BLOCK", STEP7);
+        check("a.txt", "U S1\n= Sto\nU X41\nO(\nUN T2p[21]\n)\n= X1", STEP7);
+        check("a.txt", "U T1\n= A4.0", STEP7);
+        check("a.txt", "ST : MAST - SR10\n%M0 := TRUE;", ST);
+        check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", ST);
+    }
+
+    #[test]
+    fn near_misses_are_left_out() {
+        for text in [
+            "",
+            "\n\n// nothing\n",
+            "La fonction FC1 est appelée par OB1.\nFUNCTION FC 1 désigne la fonction numéro un du programme.\n\
+             L'instruction U E0.0 lit l'entrée.\n",
+            "FUNCTION principale du programme\nTYPE de machine\n",
+            "# Title\n\nSome words about a program of a controller.\n\n```\nU E 0.0\n= A 4.0\nU E 0.1\n```\n\n\
+             - and a list of other words\n- with a second entry in it\n",
+            "#include <stdio.h>\nint main(void)\n{\n  printf(\"%d %s3\", 1, x);\n  return 0;\n}\n",
+            "{\n  \"name\": \"plc\",\n  \"A\": [1, 2]\n}\n",
+            "[HEADER]\nname = x\n[other]\ny = 1\n",
+            "solid cube\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\n endloop\n endfacet\nendsolid cube\n",
+            "MEMORY\n{\n  FLASH (rx) : ORIGIN = 0x8000, LENGTH = 32K\n}\nSECTIONS { .text : { *(.text) } }\n",
+            "Object subclass: Foo [\n  bar [ | x | x := 3. ^x ]\n]\n",
+            ".assembly extern mscorlib {}\n.class public Foo {\n  ldarg.0\n  ret\n}\n",
+            "name,address\npump,1\nvalve,2\n",
+        ] {
+            for path in ["a.txt", "a.stl", "a.st", "a.il", "a.ld", "a.db", "a.sdf"] {
+                if text.starts_with("[HEADER]") && matches!(path, "a.st" | "a.il" | "a.ld") {
+                    continue;
+                }
+                if text.trim().trim_start_matches("// nothing").is_empty() && !matches!(path, "a.txt" | "a.db" | "a.ld")
+                {
+                    continue;
+                }
+                check(path, text, Detected::NotPlc);
+            }
+        }
+    }
+
+    #[test]
+    fn extensions_decide_what_content_does_not() {
+        check("a.awl", "", STEP7);
+        check("a.AWL", "// nothing yet\n", STEP7);
+        check("a.awl", "??? !!!\n", STEP7);
+        check("a.awl", "<?xml version='1.0'?>\n<a/>", Detected::Unreadable { why: MARKUP });
+        check("a.stl", "// nothing yet\n", STEP7);
+        check("a.il", "(* nothing yet *)", IL);
+        check("a.st", "", ST);
+        check("a.il", "LD Depart\nANDN Arret\nST Moteur\n", IL);
+        check("a.st", "Moteur := Depart AND NOT Arret;\n", ST);
+        check("a.st", "VAR\n x : INT;\nEND_VAR\nx := x + 1;\n", unsupported(unsupported::IEC));
+        check("a.dfb", "FUNCTION_BLOCK Cpt\nEND_FUNCTION_BLOCK", unsupported(unsupported::DFB));
+        check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", unsupported(unsupported::VARIABLES));
+        check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
+        check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", unsupported(unsupported::GRAFCET));
+        check(
+            "a.gr7",
+            "FUNCTION_BLOCK \"x\"\nVAR\nEND_VAR\nGRAPH7\nSEQUENCE\nINITIAL_STEP S1:\n",
+            unsupported(unsupported::GRAPH),
+        );
+        check("a.scl", "x", unsupported(unsupported::SCL));
+        check("a.xef", "<FEFExchangeFile/>", unsupported(unsupported::CONTROL_EXPERT));
+        check("a.db", "DATA_BLOCK \"a\"\nSTRUCT\nEND_STRUCT;\nBEGIN\nEND_DATA_BLOCK", STEP7);
+        check("a.sdf", "\"a\",\"I 0.0\",\"BOOL\",\"x\"\n", unsupported(unsupported::SYMBOLS));
+        check("a.asc", "126,Pump                    E       0.0 BOOL      x\n", unsupported(unsupported::SYMBOLS));
+        check("a.seq", "\tPump\tE 0.0\tcomment\n", unsupported(unsupported::SYMBOLS));
+        check("a.sfc", "INITIAL_STEP X0 : END_STEP", unsupported(unsupported::SFC));
+    }
+
+    #[test]
+    fn data_that_is_not_text() {
+        let zip = b"PK\x03\x04\x14\0\0\0\x08\0\0\0";
+        let unreadable = Detected::Unreadable { why: BINARY };
+        for (path, expected) in [
+            ("a.awl", unreadable),
+            ("a.il", unreadable),
+            ("a.stl", Detected::NotPlc),
+            ("a.txt", Detected::NotPlc),
+            ("a.db", Detected::NotPlc),
+            ("a.stx", unsupported(unsupported::PROJECT)),
+            ("a.ufb", unsupported(unsupported::ENCRYPTED)),
+            ("a.zef", unsupported(unsupported::CONTROL_EXPERT)),
+        ] {
+            let (source, detected) = load(hint(path), zip, None);
+            assert_eq!((detected, &*source.text), (expected, ""), "{path}");
+        }
+        let explicit = FileHint { explicit: true, ..hint("a.bin") };
+        assert_eq!(load(explicit, zip, None).1, unreadable);
+
+        // A mesh of one triangle whose header and coordinates happen to be printable.
+        let mut mesh = vec![b' '; 80];
+        mesh.extend(1_u32.to_le_bytes());
+        mesh.extend([b'A'; 50]);
+        assert_eq!(load(hint("a.stl"), &mesh, None).1, Detected::NotPlc);
+
+        let utf16 = b"U\0 \0E\x000\0.\x000\0\n\0=\0 \0A\x001\0.\x000\0";
+        assert_eq!(load(hint("a.txt"), utf16, Some(Encoding::Utf16Le)).1, STEP7);
+    }
+
+    #[test]
+    fn the_user_may_know_better() {
+        let forced = |dialect, text| detect(FileHint { dialect, ..hint("a.txt") }, text);
+        assert_eq!(forced(Dialect::Step7, "prose, for all we know"), STEP7);
+        assert_eq!(forced(Dialect::Pl7, PL7_IL), IL);
+        assert_eq!(forced(Dialect::Pl7, "Moteur := Depart;"), ST);
+        assert_eq!(forced(Dialect::Pl7Il, PL7_ST), IL);
+        assert_eq!(forced(Dialect::Pl7St, "[SOURCE_UNIT]"), Detected::Exchange);
+        let explicit = FileHint { explicit: true, ..hint("a.xyz") };
+        assert_eq!(detect(explicit, "= A 4.0"), STEP7);
+        assert_eq!(detect(explicit, "%M0 := 1;"), ST);
+        assert_eq!(detect(explicit, "some words that nobody takes for a program"), Detected::NotPlc);
+        assert_eq!(detect(hint("a.xyz"), "= A 4.0"), Detected::NotPlc);
+    }
+
+    #[test]
+    fn dialect_names() {
+        for dialect in Dialect::ALL {
+            assert_eq!(dialect.as_str().parse(), Ok(dialect));
+        }
+        assert_eq!("ladder".parse::<Dialect>(), Err(UnknownDialect("ladder".into())));
+    }
+
+    #[test]
+    fn known_extensions() {
+        for path in ["a.awl", "b/A.STL", "x.Txt", "y.fef", "z.gr7"] {
+            assert!(has_plc_extension(Path::new(path)), "{path}");
+        }
+        for path in ["a.md", "a.c", "awl", "a.awl.bak", "", ".awl"] {
+            assert!(!has_plc_extension(Path::new(path)), "{path}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_file_is_something(
+            text in "([UOLAS=%(){}\\[\\]\"'«»:;.,#* \t\nIF0-9a-z!/<>]|FUNCTION |%MW|END_|:=){0,80}|\\PC*",
+            path in "a\\.(awl|stl|st|il|ld|txt|sdf|gr7)",
+        ) {
+            let _ = detect(hint(&path), &text);
+        }
+    }
 }

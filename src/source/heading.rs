@@ -90,6 +90,9 @@ fn numbered_block(text: &str) -> Option<(BlockName, &str)> {
 
 /// What follows the keyword that ends a STEP 7 block, if a line starts with one.
 pub(super) fn block_end(line: &str) -> Option<&str> {
+    if !line.starts_with(['E', 'e']) {
+        return None;
+    }
     let rest = strip_prefix_ignore_case(line, "END_")?;
     let (keyword, rest) = word(rest);
     BLOCK_KEYWORDS.iter().any(|(name, _)| name.eq_ignore_ascii_case(keyword)).then_some(rest)
@@ -138,15 +141,15 @@ pub(super) fn pl7_heading(line: &str) -> Option<Heading> {
     if !matches!(line.as_bytes().first()? | 0x20, b's' | b'i' | b'l' | b'g') {
         return None;
     }
-    let (language, rest) = word(line);
-    let language = match language.to_ascii_uppercase().as_str() {
-        "LD" => HeadingLanguage::Ladder,
-        "IL" => HeadingLanguage::Il,
-        "ST" => HeadingLanguage::St,
-        "GR7" => HeadingLanguage::Grafcet,
-        _ => return None,
-    };
+    let (name, rest) = word(line);
     let address = rest.trim_start().strip_prefix(':')?.trim();
+    let languages = [
+        ("LD", HeadingLanguage::Ladder),
+        ("IL", HeadingLanguage::Il),
+        ("ST", HeadingLanguage::St),
+        ("GR7", HeadingLanguage::Grafcet),
+    ];
+    let (_, language) = languages.into_iter().find(|(language, _)| language.eq_ignore_ascii_case(name))?;
     if let Some(module) = strip_prefix_ignore_case(address, "PL7-2") {
         return Some(Heading { language, entity: pl7_2_entity(module)?, pl7_2: true });
     }

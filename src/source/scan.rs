@@ -45,13 +45,22 @@ impl<'t> Lines<'t> {
     fn plain_line(&self, from: usize) -> (usize, Option<usize>) {
         let bytes = self.text.as_bytes();
         let rest = bytes.get(from..).unwrap_or_default();
-        let mut at = 0;
-        // An asterisk may open a comment: only then is the line read byte by byte.
-        match memchr3(b'\n', b'\r', b'*', rest) {
-            Some(hit) if rest[hit] == b'*' => {}
-            Some(hit) => return (after_break(bytes, from + hit), None),
-            None => return (bytes.len(), None),
+        let mut searched = 0;
+        loop {
+            match find_break_or_asterisk(rest, searched) {
+                None => return (bytes.len(), None),
+                Some((hit, b'*')) if hit > 0 && rest[hit - 1] == b'(' => {
+                    // Quotes and line comments before it may hide it; without any, it opens a comment.
+                    match memchr3(b'\'', b'"', b'/', &rest[..hit]) {
+                        Some(_) => break,
+                        None => return (from + hit - 1, Some(from + hit - 1)),
+                    }
+                }
+                Some((hit, b'*')) => searched = hit + 1,
+                Some((hit, _)) => return (after_break(bytes, from + hit), None),
+            }
         }
+        let mut at = 0;
         let mut quote = None;
         while let Some(&byte) = rest.get(at) {
             match (byte, quote) {
@@ -79,6 +88,16 @@ impl<'t> Iterator for Lines<'t> {
         if start >= bytes.len() {
             return None;
         }
+        // Most lines are code without comments.
+        let first = skip_blanks(self.text, start);
+        if bytes.get(first).is_some_and(|byte| !matches!(byte, b'(' | b'/' | b'T' | b't' | b'N' | b'n' | b'\n' | b'\r'))
+        {
+            let (end, comment) = self.plain_line(first);
+            if comment.is_none() {
+                self.pos = end;
+                return Some(Line { start, end, code_start: first, code: trim_end(self.text, first, end) });
+            }
+        }
         let mut code: Option<(usize, usize)> = None;
         let mut from = start;
         let end = loop {
@@ -105,9 +124,45 @@ impl<'t> Iterator for Lines<'t> {
         };
         self.pos = end;
         let (code_start, code_end) = code.unwrap_or((end, end));
-        let code = self.text.get(code_start..code_end).unwrap_or_default().trim_end();
-        Some(Line { start, end, code_start, code })
+        Some(Line { start, end, code_start, code: trim_end(self.text, code_start, code_end) })
     }
+}
+
+/// The first line break or asterisk at or after `from`, and which it is. Lines are short, so that the first bytes are
+/// looked at eight at a time before a vector search, which is slow to start.
+fn find_break_or_asterisk(bytes: &[u8], from: usize) -> Option<(usize, u8)> {
+    const SHORT: usize = 6;
+    let mut at = from;
+    for word in bytes.get(from..)?.chunks_exact(8).take(SHORT) {
+        let word = word.try_into().map_or(0, u64::from_le_bytes);
+        let found = equal_bytes(word, b'\n') | equal_bytes(word, b'\r') | equal_bytes(word, b'*');
+        if found != 0 {
+            at += found.trailing_zeros() as usize / 8;
+            return Some((at, bytes[at]));
+        }
+        at += 8;
+    }
+    memchr3(b'\n', b'\r', b'*', &bytes[at..]).map(|length| (at + length, bytes[at + length]))
+}
+
+/// Sets the high bit of the first byte of the word, counted from the lowest, that equals `byte`. Higher bytes may be
+/// marked although they differ.
+fn equal_bytes(word: u64, byte: u8) -> u64 {
+    const ONES: u64 = u64::from_le_bytes([1; 8]);
+    let zeros = word ^ (ONES * byte as u64);
+    zeros.wrapping_sub(ONES) & !zeros & (ONES << 7)
+}
+
+/// A piece of text without the blanks at its end.
+fn trim_end(text: &str, start: usize, end: usize) -> &str {
+    let mut last = end;
+    while let Some(b' ' | b'\t' | b'\n' | b'\r' | b'\x0b' | b'\x0c') =
+        text.as_bytes().get(start..last).and_then(<[u8]>::last)
+    {
+        last -= 1;
+    }
+    let piece = text.get(start..last).unwrap_or_default();
+    if piece.ends_with(|c: char| c.is_ascii()) { piece } else { piece.trim_end() }
 }
 
 /// Whether a line is a title, whose text is free: parentheses and apostrophes in it mean nothing.

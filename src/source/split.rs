@@ -215,34 +215,12 @@ fn step7(units: &mut Units<'_>, hint: &SplitHint) {
 
 /// The mnemonic set of a file.
 fn mnemonics(text: &str) -> Mnemonics {
-    vote(text).unwrap_or(if memchr::memmem::find(text.as_bytes(), "«".as_bytes()).is_some() {
+    crate::syntax::awl::vote(text).unwrap_or(if memchr::memmem::find(text.as_bytes(), "«".as_bytes()).is_some() {
         // Only French documents quote symbols so, and they use the German set.
         Mnemonics::German
     } else {
         Mnemonics::English
     })
-}
-
-/// TO BE REPLACED AT MERGE by `crate::syntax::awl::vote`, which has the whole table of unambiguous words.
-fn vote(text: &str) -> Option<Mnemonics> {
-    const ENOUGH: i32 = 64;
-    const GERMAN: [&str; 12] = ["U", "UN", "SPA", "SPB", "SPBN", "AUF", "BEA", "BEB", "SV", "SA", "ZV", "ZR"];
-    const ENGLISH: [&str; 10] = ["AN", "JU", "JC", "JCN", "OPN", "BEU", "BEC", "SD", "CU", "CD"];
-    let mut german: i32 = 0;
-    for line in Lines::new(text, Comments::Step7) {
-        let (first, rest) = word(line.code);
-        let (mnemonic, _) = rest.trim_start().strip_prefix(':').map_or((first, rest), |code| word(code.trim_start()));
-        german += i32::from(GERMAN.iter().any(|word| word.eq_ignore_ascii_case(mnemonic)));
-        german -= i32::from(ENGLISH.iter().any(|word| word.eq_ignore_ascii_case(mnemonic)));
-        if german.abs() >= ENOUGH {
-            break;
-        }
-    }
-    match german {
-        0 => None,
-        1.. => Some(Mnemonics::German),
-        _ => Some(Mnemonics::English),
-    }
 }
 
 /// PL7 as it is pasted in documents: headings, and code before the first one.
@@ -457,12 +435,322 @@ fn next_key(line: &str) -> Option<Key> {
         KEYS.into_iter().find_map(|name| {
             let start = before.len().checked_sub(name.len())?;
             let (prefix, found) = before.split_at_checked(start)?;
+            if !found.eq_ignore_ascii_case(name) {
+                return None;
+            }
             let word = prefix.rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_').map_or(0, |at| at + 1);
             // `PROGNAME = 'x'` is the value of the key before, and the next one.
             let glued = prefix.get(word..).unwrap_or_default();
             let is_value =
                 ["", "PROG", "LD", "IL", "ST", "GR7", "OTHERS"].iter().any(|v| v.eq_ignore_ascii_case(glued));
-            (found.eq_ignore_ascii_case(name) && is_value).then_some(Key { name, start, end: equals + 1 })
+            is_value.then_some(Key { name, start, end: equals + 1 })
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::detect::{Dialect, FileHint, detect};
+    use super::*;
+    use crate::model::entity::{BlockKind, BlockName};
+
+    const GERMAN: Language = Language::Awl(Mnemonics::German);
+    const ST: Language = Language::Pl7St;
+    const IL: Language = Language::Pl7Il;
+    const KEYS: Language = Language::Exchange;
+
+    /// Keys, languages and texts of the units, the form of unsupported ones instead of their language.
+    #[track_caller]
+    fn check(detected: Detected, text: &str, expected: &[(&str, Language, &str)]) -> Vec<UnitSpan> {
+        let units = split(text, detected, &SplitHint::default());
+        assert_tiles(text, &units);
+        let found: Vec<_> = units.iter().map(|unit| (unit.key.as_str(), unit.language, &text[unit.range])).collect();
+        assert_eq!(found, expected);
+        units
+    }
+
+    #[track_caller]
+    fn assert_tiles(text: &str, units: &[UnitSpan]) {
+        let mut end = TextSize::new(0);
+        let mut keys = FxHashSet::default();
+        for unit in units {
+            assert_eq!(unit.range.start(), end);
+            end = unit.range.end();
+            assert!(text.is_char_boundary(end.into()));
+            assert!(keys.insert(unit.key.clone()), "{} twice", unit.key);
+        }
+        assert_eq!(end, TextSize::of(text));
+        assert!(!units.is_empty());
+    }
+
+    fn unsupported(units: &[UnitSpan]) -> Vec<Option<&'static str>> {
+        units.iter().map(|unit| unit.unsupported).collect()
+    }
+
+    #[test]
+    fn blocks_of_a_source() {
+        check(
+            Detected::Step7,
+            "// head\nFUNCTION FC 1 : VOID\r\nBEGIN\n(*\nFUNCTION FC 9\n*)\n // FUNCTION FC 8\nU E 0.0\nEND_FUNCTION // x\n\
+             // of FB 1\n\nfunction_block \"Pump\"\nEND_FUNCTION_BLOCK DATA_BLOCK DB 1 \"Pump\"\nBEGIN\nEND_DATA_BLOCK\n\n",
+            &[
+                (
+                    "FC1",
+                    GERMAN,
+                    "// head\nFUNCTION FC 1 : VOID\r\nBEGIN\n(*\nFUNCTION FC 9\n*)\n // FUNCTION FC 8\nU E 0.0\n\
+                     END_FUNCTION // x\n",
+                ),
+                ("FB \"pump\"", GERMAN, "// of FB 1\n\nfunction_block \"Pump\"\nEND_FUNCTION_BLOCK "),
+                ("DB1", GERMAN, "DATA_BLOCK DB 1 \"Pump\"\nBEGIN\nEND_DATA_BLOCK\n\n"),
+            ],
+        );
+    }
+
+    #[test]
+    fn text_around_blocks() {
+        check(
+            Detected::Step7,
+            "U E 0.0\n// of FC 1\nFUNCTION FC 1 : VOID\nU E 0.1\nTYPE : INT;\nTYPE UDT 1\nEND_TYPE\nstray\n\n\
+             FUNCTION FC 1 : VOID\n",
+            &[
+                ("file", GERMAN, "U E 0.0\n"),
+                ("FC1", GERMAN, "// of FC 1\nFUNCTION FC 1 : VOID\nU E 0.1\nTYPE : INT;\n"),
+                ("UDT1", GERMAN, "TYPE UDT 1\nEND_TYPE\n"),
+                ("file#2", GERMAN, "stray\n"),
+                ("FC1#2", GERMAN, "\nFUNCTION FC 1 : VOID\n"),
+            ],
+        );
+    }
+
+    #[test]
+    fn listings() {
+        check(Detected::Step7, "\r U E 0.0\r= A 4.0\r", &[("listing", GERMAN, "\r U E 0.0\r= A 4.0\r")]);
+        check(
+            Detected::Step7,
+            "U «a»\n\nBloc FC1 :\nS «X0»\nBE\n// OB1 :\nBlock OB 1:\nCALL FC1\n",
+            &[
+                ("listing", GERMAN, "U «a»\n"),
+                ("FC1", GERMAN, "\nBloc FC1 :\nS «X0»\nBE\n"),
+                ("OB1", GERMAN, "// OB1 :\nBlock OB 1:\nCALL FC1\n"),
+            ],
+        );
+        let hint = SplitHint {
+            entity: Some(Entity::Block { kind: BlockKind::Ob, name: BlockName::Number(BlockKind::Ob, 35) }),
+            mnemonics: Some(Mnemonics::English),
+        };
+        let units = split("= M 0.0", Detected::Step7, &hint);
+        assert_eq!((units[0].key.as_str(), units[0].language), ("OB35", Language::Awl(Mnemonics::English)));
+    }
+
+    #[test]
+    fn mnemonics_of_a_file() {
+        for (text, expected) in [
+            ("", Mnemonics::English),
+            ("= M 0.0\n", Mnemonics::English),
+            ("S « X0 »\n", Mnemonics::German),
+            ("AN I 0.0\nM1: JU M1\n", Mnemonics::English),
+            ("lab: SPA lab\nUN E 0.0", Mnemonics::German),
+        ] {
+            assert_eq!(mnemonics(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn empty_texts_have_one_unit() {
+        for detected in [Detected::Step7, Detected::Pasted(Pl7Text::Il), Detected::Exchange, Detected::NotPlc] {
+            for text in ["", "\n\n", "(* only *)"] {
+                let units = split(text, detected, &SplitHint::default());
+                assert_tiles(text, &units);
+                assert_eq!(units.len(), 1);
+            }
+        }
+    }
+
+    #[test]
+    fn pasted_sections() {
+        let st = Detected::Pasted(Pl7Text::St);
+        check(st, "! %M0 := TRUE;\n", &[("MAST - MAIN", ST, "! %M0 := TRUE;\n")]);
+        let units = check(
+            st,
+            "!\n(* ST : MAST - SR1 *)\nST : MAST - SR10\r!\rIL : MAST - Peinture - PRL\nLD %M0\n\
+             ST : MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)\n%M1\nLD : FAST - MAIN\nRUNG\nLD : PL7-2 - POST\n\
+             ST : PL7-2 - PRL\nGR7 : MAST - Peinture - CHART\n",
+            &[
+                ("MAST - MAIN", ST, "!\n"),
+                ("MAST - SR10", ST, "(* ST : MAST - SR1 *)\nST : MAST - SR10\r!\r"),
+                ("MAST - Peinture - PRL", IL, "IL : MAST - Peinture - PRL\nLD %M0\n"),
+                (
+                    "MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)",
+                    ST,
+                    "ST : MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)\n%M1\n",
+                ),
+                ("FAST - MAIN", KEYS, "LD : FAST - MAIN\nRUNG\n"),
+                ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
+                ("MAST - PRL", KEYS, "ST : PL7-2 - PRL\n"),
+                ("MAST - Peinture - CHART", KEYS, "GR7 : MAST - Peinture - CHART\n"),
+            ],
+        );
+        use super::unsupported::{GRAFCET, LADDER, PL7_2};
+        let expected = [None, None, None, None, Some(LADDER), Some(LADDER), Some(PL7_2), Some(GRAFCET)];
+        assert_eq!(unsupported(&units), expected);
+    }
+
+    #[test]
+    fn exchange_files() {
+        let units = check(
+            Detected::Exchange,
+            "[HEADER]\nDATE = date#2024-03-01\n[VENDOR]\nx\n[SOURCE_UNIT]\nSU_TYPE = PROG\nNAME = 'MAST_SR1\n\
+             LANGUAGE = IL\nBODY =\nADDRESS = MAST SR1\n\nPROGRAM\n(*PHRASE*) LD %M0\n(* [EOF] *)\n\
+             [%MW0:=%MW1] (*END_PHRASE*)\nEND_PROGRAM\n\n[SOURCE_UNIT]\n\
+             SU_TYPE=PROGNAME='Peinture'LANGUAGE=ST BODY=PROGRAM\n%M1:=%M2;\n[DATA_UNIT]\nVAR_GLOBAL\nEND_VAR\n[EOF]\n",
+            &[
+                ("[HEADER]", KEYS, "[HEADER]\nDATE = date#2024-03-01\n"),
+                ("[VENDOR]", KEYS, "[VENDOR]\nx\n"),
+                (
+                    "[SOURCE_UNIT] MAST - SR1",
+                    KEYS,
+                    "[SOURCE_UNIT]\nSU_TYPE = PROG\nNAME = 'MAST_SR1\nLANGUAGE = IL\nBODY =\nADDRESS = MAST SR1\n",
+                ),
+                (
+                    "MAST - SR1",
+                    IL,
+                    "\nPROGRAM\n(*PHRASE*) LD %M0\n(* [EOF] *)\n[%MW0:=%MW1] (*END_PHRASE*)\nEND_PROGRAM\n",
+                ),
+                (
+                    "[SOURCE_UNIT] MAST - Peinture",
+                    KEYS,
+                    "\n[SOURCE_UNIT]\nSU_TYPE=PROGNAME='Peinture'LANGUAGE=ST BODY=",
+                ),
+                ("MAST - Peinture", ST, "PROGRAM\n%M1:=%M2;\n"),
+                ("[DATA_UNIT]", KEYS, "[DATA_UNIT]\nVAR_GLOBAL\nEND_VAR\n"),
+                ("[EOF]", KEYS, "[EOF]\n"),
+            ],
+        );
+        assert_eq!(units[6].unsupported, Some(unsupported::VARIABLES));
+    }
+
+    #[test]
+    fn programs_of_exchange_files() {
+        use super::unsupported::{DFB, GRAFCET, LADDER, OTHER_LANGUAGE};
+        for (keys, program, expected, language, form) in [
+            ("ADDRESS = MAST SR1", "PROGRAM", "MAST - SR1", ST, None),
+            ("NAME = 'FAST_MAIN' LANGUAGE = IL ADDRESS = FAST MAIN", "PROGRAM", "FAST - MAIN", IL, None),
+            ("ADDRESS=EVT3 LANGUAGE=ST", "PROGRAM", "EVT3", ST, None),
+            ("NAME = MAST_PRL ADDRESS = MAST PRL LANGUAGE = 'ST'", "PROGRAM", "MAST - PRL", ST, None),
+            ("NAME = Peinture_POST\nADDRESS = MAST POST", "PROGRAM", "MAST - Peinture - POST", ST, None),
+            (
+                "LANGUAGE = OTHERS ADDRESS = MAST Chart PROG_LANGAGE = GR7 NAME = 'MAST_Chart'",
+                "PROGRAM MAST 'Chart'",
+                "MAST - CHART",
+                KEYS,
+                Some(GRAFCET),
+            ),
+            ("LANGUAGE = OTHERS", "PROGRAMMAST'Chart'", "MAST - CHART", KEYS, Some(OTHER_LANGUAGE)),
+            ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", KEYS, Some(LADDER)),
+            ("NAME = 'x'", "PROGRAM\nRUNG", "MAST - x", KEYS, Some(LADDER)),
+            ("NAME = 'x'", "PROGRAM\n LD %M0\n ST %M1", "MAST - x", IL, None),
+            ("NAME = 'x'", "FUNCTION_BLOCK Cpt", "FUNCTION_BLOCK Cpt", KEYS, Some(DFB)),
+            ("PROGRAM = x ADDRESS = nonsense", "PROGRAM", "MAST - MAIN", ST, None),
+        ] {
+            let text = format!("[SOURCE_UNIT] {keys}\n{program}\n");
+            let units = split(&text, Detected::Exchange, &SplitHint::default());
+            assert_tiles(&text, &units);
+            let unit = units.last().unwrap();
+            assert_eq!((unit.key.as_str(), unit.language, unit.unsupported), (expected, language, form), "{keys}");
+            assert!(text[unit.range].starts_with(program), "{keys}");
+        }
+    }
+
+    #[test]
+    fn files_that_are_not_read() {
+        let units = split("x", Detected::Unsupported { what: unsupported::DFB }, &SplitHint::default());
+        assert_eq!(unsupported(&units), [Some(unsupported::DFB)]);
+    }
+
+    #[test]
+    fn keys_survive_edits_elsewhere() {
+        let keys = |text| -> Vec<_> {
+            split(text, Detected::Step7, &SplitHint::default()).into_iter().map(|unit| unit.key).collect()
+        };
+        let before = keys("FUNCTION FC 1 : VOID\nFUNCTION FC 2 : VOID\nFUNCTION FC 2 : VOID\n");
+        let after =
+            keys("FUNCTION FC 3 : VOID\nFUNCTION FC 1 : VOID\nU E 0.0\nFUNCTION FC 2 : VOID\nFUNCTION FC 2 : VOID\n");
+        assert_eq!(before, ["FC1", "FC2", "FC2#2"]);
+        assert_eq!(after[1..], before);
+        assert_eq!(
+            keys("FUNCTION \"a\" : VOID\nFUNCTION \"A\" : VOID\nFUNCTION_BLOCK \"a\"#2\nFUNCTION \"a\" : VOID\n"),
+            ["FC \"a\"", "FC \"a\"#2", "FB \"a\"", "FC \"a\"#3"]
+        );
+    }
+
+    /// Texts of millions of bytes: what is quadratic does not end.
+    #[test]
+    fn hostile_texts_take_linear_time() {
+        let long = 400_000;
+        let texts = [
+            "U".repeat(10_000_000),
+            "(*".repeat(long / 2),
+            "(* *)".repeat(long / 5),
+            "[HEADER]\n".repeat(100_000),
+            "[HEADER]".repeat(long / 8),
+            format!("[SOURCE_UNIT]\n{}", "NAME=".repeat(long / 5)),
+            format!("[SOURCE_UNIT]\n{}", "a=".repeat(long / 2)),
+            "[SOURCE_UNIT]\nPROGRAM\n".repeat(long / 25),
+            "FUNCTION FC 1 : VOID\n".repeat(long / 20),
+            "ST : EVT1\n".repeat(long / 10),
+            "// (*\n".repeat(long / 6),
+            "'(*'".repeat(long / 4),
+            "%".repeat(long),
+            "\u{a0}".repeat(long / 2),
+            "\r".repeat(long),
+            "END_FUNCTION ".repeat(long / 13),
+        ];
+        for text in &texts {
+            let detected = detect(FileHint { explicit: true, ..FileHint::default() }, text);
+            for detected in [detected, Detected::Step7, Detected::Pasted(Pl7Text::St), Detected::Exchange] {
+                let units = split(text, detected, &SplitHint::default());
+                assert_tiles(text, &units);
+            }
+        }
+    }
+
+    const PIECES: &str = "\\PC{0,8}|[\r\n \t\u{a0}]{1,3}|FUNCTION FC [1-3] : VOID|FUNCTION_BLOCK \"[ab]#2\"|END_FUNCTION;?|\
+        TYPE UDT 1|Bloc FC[12] :|// |\\(\\*|\\*\\)|['\"]|TITLE =|ST : MAST - SR[12]|LD : EVT1|IL : MAST - A - PRL|\
+        \\[SOURCE_UNIT\\]|\\[EOF\\]|\\[HEADER|PROGRAM|END_PROGRAM|NAME = 'MAST_|ADDRESS=|LANGUAGE=|LD %M0|RUNG|%M0 := 1;";
+
+    proptest! {
+        #[test]
+        fn units_tile_any_text(pieces in prop::collection::vec(PIECES, 0..24)) {
+            let text = pieces.concat();
+            let hint = FileHint { dialect: Dialect::Auto, explicit: true, path: None };
+            for detected in [
+                detect(hint, &text),
+                Detected::Step7,
+                Detected::Pasted(Pl7Text::Il),
+                Detected::Exchange,
+                Detected::NotPlc,
+            ] {
+                assert_tiles(&text, &split(&text, detected, &SplitHint::default()));
+            }
+        }
+
+        /// Cutting a file anywhere keeps the units before the last one.
+        #[test]
+        fn cut_files_keep_their_units(pieces in prop::collection::vec(PIECES, 0..24), cut: prop::sample::Index) {
+            let text = pieces.join("\n");
+            let mut at = cut.index(text.len() + 1);
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            let starts = |text: &str| -> Vec<_> {
+                let units = split(text, Detected::Pasted(Pl7Text::St), &SplitHint::default());
+                units.iter().map(|unit| unit.range.start()).collect()
+            };
+            let (whole, part) = (starts(&text), starts(&text[..at]));
+            let kept = part.len().saturating_sub(1);
+            prop_assert_eq!(&whole[..kept], &part[..kept]);
+        }
+    }
 }

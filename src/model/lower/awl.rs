@@ -18,10 +18,11 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, Mode, OddityKind, Pin, Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, LoopKind, Mode, OddityKind, Pin, Section,
+    StatementKind,
 };
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Relation};
+use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Relation, Shift};
 use crate::syntax::{Language, Mnemonics, SyntaxKind, SyntaxNode};
 use crate::target;
 
@@ -45,6 +46,8 @@ pub fn lower(root: &SyntaxNode, entity: Entity, mnemonics: Mnemonics) -> UnitMod
         operands: FxHashMap::default(),
         declared: FxHashMap::default(),
         closed: false,
+        last_load: None,
+        jump_list: false,
     };
     machine.br = machine.b.exprs().opaque();
     for child in root.children() {
@@ -131,6 +134,10 @@ struct Load {
     used: bool,
     /// What overwrote it; the end of the block when nothing did.
     lost_at: Option<TextRange>,
+    /// The load right before, which this one pushed out of accumulator 1.
+    follows: Option<u32>,
+    /// It lies in accumulator 1 where the block goes back to its caller, who may read it there.
+    returned: bool,
 }
 
 /// What is known of the data block registers.
@@ -182,6 +189,10 @@ struct Machine {
     declared: FxHashMap<SmolStr, Type>,
     /// The block's end was read, so that what is left over is really lost.
     closed: bool,
+    /// The instruction before, when it was a load.
+    last_load: Option<u32>,
+    /// The unconditional jumps read now are the entries of a jump list.
+    jump_list: bool,
 }
 
 impl Machine {
@@ -189,6 +200,9 @@ impl Machine {
         self.closed = block.kind() == SyntaxKind::Block;
         self.declarations(block);
         self.b.model.instance_of = instance_of(block);
+        for init in block.children().filter_map(ast::DataInit::cast) {
+            self.initial_value(init.value());
+        }
         let back_targets = back_targets(block, self.mnemonics);
         self.b.set_back_targets(back_targets.clone());
         self.back_targets = back_targets;
@@ -214,19 +228,47 @@ impl Machine {
             if self.b.is_reachable() {
                 self.discard(end);
             }
+            self.hand_over();
         } else {
             self.keep_accumulators();
         }
         for nest in &self.nesting {
             self.b.oddity(OddityKind::UnclosedParenthesis, nest.range, "(");
         }
-        for load in &self.loads {
-            if !load.used {
-                let oddity = self.b.oddity(OddityKind::DeadLoad, load.range, load.text.clone());
-                oddity.related.extend(load.lost_at.map(|it| (it, "the value is lost here")));
-            }
-        }
+        self.dead_loads();
         self.b.finish()
+    }
+
+    /// Loads in a row that are lost are one finding, at the last of them.
+    fn dead_loads(&mut self) {
+        let mut group: Vec<TextRange> = Vec::new();
+        for (at, load) in self.loads.iter().enumerate() {
+            if load.used {
+                continue;
+            }
+            let continues = self.loads.get(at + 1).is_some_and(|next| !next.used && next.follows == Some(index(at)));
+            if continues {
+                group.push(load.range);
+                continue;
+            }
+            let before = std::mem::take(&mut group);
+            if load.returned && before.is_empty() {
+                continue;
+            }
+            let oddity = self.b.oddity(OddityKind::DeadLoad, load.range, load.text.clone());
+            oddity.related.extend(before.into_iter().map(|it| (it, LOST_TOO)));
+            oddity.related.extend(load.lost_at.map(|it| (it, "the value is lost here")));
+        }
+    }
+
+    /// The block goes back to its caller, who finds the accumulators as they are. An organization block has none.
+    fn hand_over(&mut self) {
+        if self.b.model.entity.block_kind() == Some(BlockKind::Ob) {
+            return;
+        }
+        for &load in &self.accumulators[0].loads {
+            self.loads[load as usize].returned = true;
+        }
     }
 
     /// Something unread stands here: nothing is known any more, and nothing is lost.
@@ -240,6 +282,13 @@ impl Machine {
         self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];
         self.open.shared = Some(None);
         self.b.wipe_by_call();
+        if !self.b.is_reachable() {
+            // A label may be part of it.
+            let path = self.b.exprs().opaque();
+            self.b.enter(path, None);
+        }
+        self.last_load = None;
+        self.jump_list = false;
     }
 
     // Declarations.
@@ -260,6 +309,7 @@ impl Machine {
                     None if decl.array_type().is_some() => "ARRAY".to_owned(),
                     None => "STRUCT".to_owned(),
                 };
+                self.initial_value(decl.init());
                 for name in decl.names() {
                     let range = name.range();
                     let name = SmolStr::new(name.text().to_lowercase());
@@ -268,6 +318,26 @@ impl Machine {
                     self.b.model.declarations.push(Declaration { name, section: kind, ty, range });
                 }
             }
+        }
+    }
+
+    /// Reads the constant of `:= S5T#1S`. Repetitions and lists of array elements are left alone.
+    fn initial_value(&mut self, value: Option<ast::InitValue>) {
+        let Some(value) = value else { return };
+        let mut text = smol_str::SmolStrBuilder::new();
+        let mut range: Option<TextRange> = None;
+        for token in value.tokens() {
+            if !matches!(
+                token.kind(),
+                SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::Plus | SyntaxKind::Minus
+            ) {
+                return;
+            }
+            text.push_str(token.text());
+            range = Some(range.map_or(token.text_range(), |it| it.cover(token.text_range())));
+        }
+        if let Some(range) = range {
+            self.constant(&text.finish(), range);
         }
     }
 
@@ -286,7 +356,7 @@ impl Machine {
                 SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::CharString | SyntaxKind::PointerConstant,
             )
             | Some(SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Hash) => return self.constant(&text, range),
-            Some(SyntaxKind::LocalName) => self.local(&text, has_index),
+            Some(SyntaxKind::LocalName) => Operand::Object(self.local(&text, has_index)),
             Some(SyntaxKind::QuotedSymbol) => {
                 let mut object = Object::symbol(&text);
                 object.indexed = has_index;
@@ -303,7 +373,16 @@ impl Machine {
                 let ty = indirect_type(&text);
                 return Operand::Object(self.indirect(&text, ty));
             }
-            Some(_) => self.address(&text, range),
+            Some(_) => match text.to_ascii_uppercase().as_str() {
+                "TRUE" => Operand::Constant(Exprs::TRUE),
+                "FALSE" => Operand::Constant(Exprs::FALSE),
+                "AR1" | "AR2" => Operand::Other,
+                // Not cached when it is none: each place is reported.
+                _ => match self.address(&text, range) {
+                    Ok(object) => Operand::Object(object),
+                    Err(object) => return Operand::Object(object),
+                },
+            },
             None => Operand::Other,
         };
         if !matches!(operand, Operand::Other) {
@@ -324,11 +403,11 @@ impl Machine {
         })
     }
 
-    fn local(&mut self, text: &str, indexed: bool) -> Operand {
+    fn local(&mut self, text: &str, indexed: bool) -> ObjectId {
         let name = text.trim_start_matches('#').replace('"', "").to_lowercase();
         let root = name.split(['.', '[']).next().unwrap_or_default();
         let ty = if root == name { self.declared.get(root).copied().unwrap_or(Type::Unknown) } else { Type::Unknown };
-        Operand::Object(self.b.object(Object {
+        self.b.object(Object {
             text: text.into(),
             class: Class::LocalName,
             ty,
@@ -336,22 +415,26 @@ impl Machine {
             rights: Rights::Unknown,
             extracted: false,
             indexed,
-        }))
+        })
     }
 
-    fn address(&mut self, text: &str, range: TextRange) -> Operand {
+    /// `Err`: what stands for a text that is no address.
+    fn address(&mut self, text: &str, range: TextRange) -> Result<ObjectId, ObjectId> {
         let root = text.split(['.', '[']).next().unwrap_or_default().to_lowercase();
         if self.declared.contains_key(root.as_str()) {
-            return self.local(text, false);
+            return Ok(self.local(text, false));
         }
         match object::step7::parse(text, self.mnemonics) {
-            Ok(object) => Operand::Object(self.b.object(object)),
+            Ok(object) => Ok(self.b.object(object)),
+            Err(error) if error.suggestion.is_none() && is_bare_symbol(text, self.mnemonics) => {
+                Ok(self.b.object(Object::symbol(text)))
+            }
             Err(error) => {
                 self.b.oddity(OddityKind::Address(error), range, text);
                 let mut object = Object::symbol(text);
                 object.class = Class::Indirect;
                 object.footprint.area = object::Area::Indirect;
-                Operand::Object(self.b.object(object))
+                Err(self.b.object(object))
             }
         }
     }
@@ -559,8 +642,11 @@ impl Machine {
     fn load(&mut self, value: ExprId, range: TextRange, text: SmolStr) {
         self.lose(1, range);
         let used = !self.b.is_reachable();
-        self.loads.push(Load { range, text, used, lost_at: None });
-        let loaded = Accumulator { value: Some(value), loads: vec![index(self.loads.len() - 1)], entry: false };
+        let follows = self.last_load.take();
+        self.loads.push(Load { range, text, used, lost_at: None, follows, returned: false });
+        let load = index(self.loads.len() - 1);
+        self.last_load = Some(load);
+        let loaded = Accumulator { value: Some(value), loads: vec![load], entry: false };
         let before = std::mem::replace(&mut self.accumulators[0], loaded);
         self.accumulators[1] = before;
     }
@@ -579,6 +665,14 @@ impl Machine {
 
     /// Both operands of a two-operand instruction: accumulator 2, then 1.
     fn two_operands(&mut self, range: TextRange, instr: &ast::Instr) -> (ExprId, ExprId) {
+        self.want_two(range, instr);
+        let left = self.accumulator(1);
+        let right = self.accumulator(0);
+        (left, right)
+    }
+
+    /// Reports an instruction that needs both accumulators where the block has not filled them.
+    fn want_two(&mut self, range: TextRange, instr: &ast::Instr) {
         let missing = self.accumulators.iter().filter(|it| it.entry).count();
         if missing > 0 && self.b.is_reachable() && self.closed_or_listing_start() {
             let loaded = 2 - index(missing);
@@ -587,9 +681,6 @@ impl Machine {
                 accumulator.entry = false;
             }
         }
-        let left = self.accumulator(1);
-        let right = self.accumulator(0);
-        (left, right)
     }
 
     /// A listing may show the middle of a block; only a block's start is really one.
@@ -719,6 +810,9 @@ impl Machine {
         if when == Exprs::TRUE {
             self.discard(range);
         }
+        if self.b.is_reachable() {
+            self.hand_over();
+        }
         self.b.statement(StatementKind::Return { when, how: Leave::Unit }, range);
         self.b.leave(when, DeadCause::End, range);
     }
@@ -774,11 +868,22 @@ impl Machine {
                     }
                     Some(object)
                 }
-                Operand::Constant(_) | Operand::Other => None,
+                Operand::Constant(_) | Operand::Other => {
+                    // A pointer to an area: the called block reads or writes there, and how much is not known here.
+                    if points_to_area(&bare_text(&value)) {
+                        self.b.model.reads_indirectly = true;
+                        self.b.model.writes_indirectly = true;
+                    }
+                    None
+                }
             };
             arguments.push(Argument { name, object, range });
         }
         let anchor = self.b.anchor(callee_node.range());
+        if let Some(node) = &instance_node {
+            // Follows the callee's: see `FactCall::instance_anchor`.
+            self.b.anchor(node.range());
+        }
         let call = Call {
             callee,
             text: callee_text,
@@ -808,14 +913,25 @@ impl Machine {
 
     fn instruction(&mut self, instr: &ast::Instr) {
         if let Some((text, range)) = label(instr) {
+            self.last_load = None;
+            self.jump_list = false;
             self.label(&text, range);
         }
         let Some(range) = instruction_range(instr) else { return };
-        self.b.instruction(range);
-        let Some(op) = instr.op(self.mnemonics) else {
+        let broken = instr.syntax().children().any(|it| it.kind() == SyntaxKind::Error);
+        let Some(op) = instr.op(self.mnemonics).filter(|_| !broken) else {
+            self.b.instruction(range);
             self.forget();
             return;
         };
+        match op {
+            Op::Nop | Op::Display | Op::BlockEnd => self.b.idle_instruction(),
+            _ => self.b.instruction(range),
+        }
+        if !matches!(op, Op::Load | Op::LoadBcd) {
+            self.last_load = None;
+        }
+        self.jump_list &= op == Op::Jump(JumpIf::Always);
         match op {
             Op::And | Op::AndNot | Op::OrNot | Op::Xor | Op::XorNot => self.bit_check(op, instr, range),
             Op::Or if instr.operand().is_some() => self.bit_check(op, instr, range),
@@ -959,9 +1075,13 @@ impl Machine {
                 let value = self.b.exprs().binary(operator, left, right);
                 self.result(value);
             }
-            Op::Shift(_) => {
+            Op::Shift(shift) => {
                 self.ignores_rlo(range, instr);
-                if instr.operand().is_none() {
+                if instr.operand().is_none()
+                    && !matches!(shift, Shift::RotateLeftThroughCc1 | Shift::RotateRightThroughCc1)
+                {
+                    // How far is in accumulator 2.
+                    self.want_two(range, instr);
                     self.use_loads(1);
                 }
                 self.opaque_result();
@@ -1030,11 +1150,17 @@ impl Machine {
                 self.use_loads(0);
                 let when = self.b.exprs().opaque();
                 self.jump(instr, when, range);
+                self.jump_list = true;
             }
             Op::Loop => {
                 self.opaque_result();
                 let when = self.b.exprs().opaque();
+                let before = self.b.model.loops.len();
                 self.jump(instr, when, range);
+                // LOOP counts down to 0, which a plain jump does not.
+                for it in &mut self.b.model.loops[before..] {
+                    it.kind = LoopKind::For;
+                }
             }
         }
     }
@@ -1169,7 +1295,9 @@ impl Machine {
             JumpIf::Always => {
                 // The RLO goes along; where it arrives is another matter.
                 self.string = None;
-                self.jump(instr, Exprs::TRUE, range);
+                // The number in accumulator 1 selects one entry of a list.
+                let when = if self.jump_list { self.b.exprs().opaque() } else { Exprs::TRUE };
+                self.jump(instr, when, range);
             }
             JumpIf::Rlo => self.conditional(instr, range, false, false),
             JumpIf::NotRlo => self.conditional(instr, range, true, false),
@@ -1199,6 +1327,9 @@ impl Machine {
         }
     }
 }
+
+/// Part of a load in a row of lost ones.
+const LOST_TOO: &str = "this value is lost too";
 
 /// Labels that a jump below them goes to.
 fn back_targets(block: &SyntaxNode, mnemonics: Mnemonics) -> FxHashSet<SmolStr> {
@@ -1294,6 +1425,16 @@ fn comparison(relation: Relation) -> Comparison {
     }
 }
 
+/// Whether a word that is no address may be a symbol without its quotes: it has not the form of one, letters and a
+/// number, and a number is not all that it lacks.
+fn is_bare_symbol(text: &str, mnemonics: Mnemonics) -> bool {
+    let letters = text.bytes().take_while(u8::is_ascii_alphabetic).count();
+    let numbered = letters <= 4 && text.as_bytes().get(letters).is_some_and(u8::is_ascii_digit);
+    let is_word = text.chars().all(|it| it.is_alphanumeric() || matches!(it, '_' | '.'));
+    let lacks_number = || ["0", "0.0"].iter().any(|it| object::step7::parse(&format!("{text}{it}"), mnemonics).is_ok());
+    is_word && !numbered && !lacks_number()
+}
+
 fn is_binary_result(text: &str) -> bool {
     text.eq_ignore_ascii_case("BR") || text.eq_ignore_ascii_case("BIE")
 }
@@ -1322,6 +1463,12 @@ fn indirect_type(text: &str) -> Type {
         "" => Type::Unknown,
         _ => Type::Bool,
     }
+}
+
+/// `P#M100.0BYTE10`, `P#DB5.DBX0.0WORD4`: a pointer that names its area, unlike `P#4.0`.
+fn points_to_area(text: &str) -> bool {
+    let pointer = text.strip_prefix("P#").or_else(|| text.strip_prefix("p#"));
+    pointer.is_some_and(|it| it.starts_with(|it: char| it.is_ascii_alphabetic()))
 }
 
 /// `FC1`, `DB 5`, `"Motor"`: a block's name. SFC and SFB included.
@@ -1466,7 +1613,70 @@ mod tests {
         // Used on one of two ways is used.
         assert_eq!(names("L MW0\nU E0.0\nSPB A1\nT MW2\nA1: NOP 0"), [""; 0]);
         // S7:1228: loaded where a store was meant.
-        assert_eq!(names("AUF DB5\nL 0\nL DB5.DBW0\nBE"), ["DeadLoad", "DeadLoad"]);
+        assert_eq!(names("AUF DB5\nL 0\nL DB5.DBW0\nBE"), ["DeadLoad"]);
+        // How far a shift goes is an operand, too.
+        assert_eq!(names("L MW0\nSLW\nT MW2"), ["MissingOperand(1)"]);
+        assert_eq!(names("L MW0\nSLW 4\nRLDA\nT MW2"), [""; 0]);
+    }
+
+    #[test]
+    fn lost_loads_in_a_row_are_one_finding() {
+        let model = block("L MW0\nL MW2\nL MW4\nT MW6\nSET\nL MW8\nL MW10\nL MW12\nBE");
+        let dead: Vec<(&str, usize)> = model
+            .oddities
+            .iter()
+            .map(|it| (it.text.as_str(), it.related.iter().filter(|it| it.1 == LOST_TOO).count()))
+            .collect();
+        // MW4 is stored, and MW2 lies under it until MW10 is loaded.
+        assert_eq!(dead, [("MW2", 1), ("MW12", 2)]);
+    }
+
+    #[test]
+    fn a_function_answers_in_accumulator_1() {
+        assert_eq!(names("L MW0\nT MW2\nL MW4"), [""; 0]);
+        assert_eq!(names("L MW0\nT MW2\nL MW4\nBE"), [""; 0]);
+        let parse =
+            crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
+        let name = BlockName::Number(BlockKind::Ob, 1);
+        let model = lower(&parse.syntax(), Entity::Block { kind: BlockKind::Ob, name }, Mnemonics::German);
+        assert_eq!(model.oddities.len(), 1, "nobody called it");
+    }
+
+    #[test]
+    fn every_entry_of_a_jump_list_is_reached() {
+        let model = block("L MB0\nSPL E3\nSPA E1\nSPA E2\nE3: SPA E2\nE1: U E0.0\n= A4.0\nE2: NOP 0");
+        assert!(model.unreachable.is_empty(), "{:?}", model.unreachable);
+        // The list ends with the first instruction that is no jump.
+        let model = block("L MB0\nSPL E3\nSPA E1\nNOP 0\nSPA E2\nSPA E1\nE3: NOP 0\nE1: NOP 0\nE2: NOP 0");
+        assert_eq!(model.unreachable.len(), 1);
+    }
+
+    #[test]
+    fn what_closes_a_block_is_no_dead_code() {
+        // S7:1230-1231.
+        assert!(block("U E0.0\nSPB W1\nL 0\nT MW0\nW1: BEA\nNOP 0\nBE").unreachable.is_empty());
+        assert!(model("SPA W1\n...\nU E0.0\n= A4.0\nW1: NOP 0\n").unreachable.is_empty(), "a label may be left out");
+    }
+
+    #[test]
+    fn initial_values_are_read() {
+        let text = "FUNCTION_BLOCK FB 1\nVAR\na : S5TIME := S5T#5S_12MS;\nb : INT := 5;\nc : ARRAY [0..3] OF INT := 4(0);\n\
+                    END_VAR\nBEGIN\nEND_FUNCTION_BLOCK\n";
+        let texts: Vec<SmolStr> = model(text).constants.into_iter().map(|it| it.text).collect();
+        assert_eq!(texts, ["S5T#5S_12MS"]);
+        let text = "DATA_BLOCK DB 1\nSTRUCT\na : WORD;\nEND_STRUCT;\nBEGIN\na := W#16#12345;\nEND_DATA_BLOCK\n";
+        assert_eq!(model(text).oddities.len(), 1);
+    }
+
+    #[test]
+    fn words_that_are_no_addresses() {
+        assert_eq!(names("U TRUE\nO FALSE\n= A4.0\nLAR1 AR2"), [""; 0]);
+        assert_eq!(names("U Depart\n= Lampe_1"), [""; 0], "symbols without their quotes");
+        let malformed =
+            |code: &str| block(code).oddities.iter().filter(|it| matches!(it.kind, OddityKind::Address(_))).count();
+        assert_eq!(malformed("U E1\n= A4.0\nU E1\n= A4.1"), 2, "each place");
+        assert_eq!(malformed("L MW\nT MW2"), 1);
+        assert_eq!(malformed("U I1.0\n= A4.0"), 1);
     }
 
     #[test]

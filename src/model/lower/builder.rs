@@ -312,6 +312,12 @@ impl Builder {
         self.path != Exprs::FALSE
     }
 
+    /// Notes an instruction without effect (`NOP 0`, the `BE` that closes a block): nothing is lost when no path
+    /// reaches it.
+    pub(super) fn idle_instruction(&mut self) {
+        self.model.instructions += 1;
+    }
+
     /// Notes an instruction or statement, which is unreachable when the path is FALSE.
     pub(super) fn instruction(&mut self, range: TextRange) {
         self.model.instructions += 1;

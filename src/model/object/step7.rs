@@ -225,7 +225,11 @@ fn byte_and_bit(ty: Type, text: &str, letters: &str) -> Result<u32, AddressError
             return Err(malformed(format!("a bit is written `{letters}`, its byte, `.` and its number (S7:117)")));
         };
         if bit > 7 {
-            return Err(malformed("a byte has the bits 0 to 7 only (S7:117)"));
+            return Err(AddressError {
+                kind: AddressErrorKind::OutOfRange,
+                message: "a byte has the bits 0 to 7 only (S7:117)".to_owned(),
+                suggestion: None,
+            });
         }
         bit
     } else if rest.starts_with('.') {
@@ -591,8 +595,6 @@ mod tests {
             ("DB5.DBW0.1", German, None),
             ("PE 4", German, Some("PEB 4")),
             ("PE 4.0", German, Some("PEB 4")),
-            ("M5.9", German, None),
-            ("M0.8", German, None),
             ("MW", German, None),
             ("M", German, None),
             ("", German, None),
@@ -630,9 +632,18 @@ mod tests {
 
     #[test]
     fn out_of_range() {
-        for operand in
-            ["M65536.0", "MW65535", "MD 65533", "T 65536", "Z99999999999", "DB 65536", "DB65536.DBW0", "DBW65535"]
-        {
+        for operand in [
+            "M0.8",
+            "M5.9",
+            "M65536.0",
+            "MW65535",
+            "MD 65533",
+            "T 65536",
+            "Z99999999999",
+            "DB 65536",
+            "DB65536.DBW0",
+            "DBW65535",
+        ] {
             let error = parse(operand, German).expect_err(operand);
             assert_eq!((error.kind, error.suggestion), (AddressErrorKind::OutOfRange, None), "{operand}");
         }

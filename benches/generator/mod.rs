@@ -1,0 +1,241 @@
+//! Plausible programs of any size: blocks of varied networks and sections of varied sentences, clean but for one
+//! mistake in some hundred networks. The same size and seed always give the same text.
+
+use std::fmt::Write as _;
+
+/// A small generator of pseudo-random numbers (xorshift): reproducible, and fast enough not to be measured.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.max(1))
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit
+    }
+
+    fn one_in(&mut self, n: u64) -> bool {
+        self.below(n) == 0
+    }
+
+    fn pick<'a>(&mut self, words: &[&'a str]) -> &'a str {
+        words[usize::try_from(self.below(words.len() as u64)).unwrap_or(0)]
+    }
+}
+
+const DEVICES: &[&str] =
+    &["convoyeur", "pompe", "vanne", "table", "vis", "Rollenbahn", "Hubtisch", "Presse", "gripper"];
+const STATES: &[&str] = &["pret", "en marche", "defaut", "bereit", "Störung", "running", "fermé", "ouvert", "Endlage"];
+
+/// STEP 7 blocks in German mnemonics: some `bytes` of them, in one file.
+pub fn step7(bytes: usize, seed: u64) -> String {
+    let mut random = Random::new(seed);
+    let mut text = String::with_capacity(bytes + 4096);
+    let mut blocks = Vec::new();
+    let mut number = 1;
+    while text.len() + blocks.len() * 24 < bytes {
+        block(&mut text, &mut random, number);
+        blocks.push(number);
+        number += 1;
+    }
+    text.push_str("ORGANIZATION_BLOCK OB 1\nTITLE = Hauptprogramm\nBEGIN\n");
+    for chunk in blocks.chunks(20) {
+        text.push_str("NETWORK\n");
+        for number in chunk {
+            writeln!(text, "      CALL  FC {number};").expect("a string");
+        }
+    }
+    text.push_str("END_ORGANIZATION_BLOCK\n");
+    text
+}
+
+fn block(text: &mut String, random: &mut Random, number: u64) {
+    let device = random.pick(DEVICES);
+    writeln!(text, "FUNCTION FC {number} : VOID\nTITLE = {device} {number}\nAUTHOR : atelier\nVERSION : 1.0")
+        .expect("a string");
+    text.push_str("VAR_TEMP\n  valeur : INT;\n  aide : BOOL;\nEND_VAR\nBEGIN\n");
+    let data = number % 16000 + 1;
+    for network in 0..8 + random.below(30) {
+        let state = random.pick(STATES);
+        writeln!(text, "NETWORK\nTITLE = {device} {state}\n// {state}: voir schéma folio {}", random.below(300))
+            .expect("a string");
+        let bit = format!("DB{data}.DBX{}.{}", network, random.below(8));
+        let input = format!("E {}.{}", random.below(128), random.below(8));
+        match random.below(10) {
+            0 | 1 => {
+                writeln!(text, "      U     {input};          // {state}").expect("a string");
+                writeln!(text, "      UN    E {}.{};", random.below(128), random.below(8)).expect("a string");
+                writeln!(text, "      =     {bit};").expect("a string");
+            }
+            2 => {
+                writeln!(
+                    text,
+                    "      U(    ;\n      O     {input};\n      O     M {}.{};",
+                    random.below(200),
+                    random.below(8)
+                )
+                .expect("a string");
+                writeln!(
+                    text,
+                    "      )     ;\n      UN    E {}.{};\n      =     {bit};",
+                    random.below(128),
+                    random.below(8)
+                )
+                .expect("a string");
+            }
+            3 => {
+                writeln!(text, "      U     {input};\n      S     {bit};\n      UN    {input};\n      R     {bit};")
+                    .expect("a string");
+            }
+            4 => {
+                let word = network * 2 + 100;
+                writeln!(text, "      L     DB{data}.DBW{word};\n      L     {};\n      +I    ;", random.below(1000))
+                    .expect("a string");
+                writeln!(text, "      T     DB{data}.DBW{word};").expect("a string");
+            }
+            5 => {
+                writeln!(
+                    text,
+                    "      L     EW {};\n      L     {};\n      >I    ;\n      =     {bit};",
+                    random.below(60) * 2,
+                    random.below(32000)
+                )
+                .expect("a string");
+            }
+            6 => {
+                writeln!(
+                    text,
+                    "      U     {input};\n      SPBN  M{network:03};\n      L     MW {};",
+                    random.below(100) * 2 + 300
+                )
+                .expect("a string");
+                writeln!(text, "      T     DB{data}.DBW{};\nM{network:03}: NOP   0;", network * 2 + 300)
+                    .expect("a string");
+            }
+            7 => {
+                writeln!(
+                    text,
+                    "      U     {input};\n      FP    DB{data}.DBX{}.{};\n      =     #aide;",
+                    network + 50,
+                    random.below(8)
+                )
+                .expect("a string");
+                writeln!(
+                    text,
+                    "      U     #aide;\n      S     {bit};\n      U     E {}.{};\n      R     {bit};",
+                    random.below(128),
+                    random.below(8)
+                )
+                .expect("a string");
+            }
+            8 => {
+                writeln!(
+                    text,
+                    "      U     {input};\n      L     S5T#{}S;\n      SE    T {};",
+                    random.below(90) + 1,
+                    random.below(250)
+                )
+                .expect("a string");
+                writeln!(text, "      U     T {};\n      =     {bit};", random.below(250)).expect("a string");
+            }
+            _ => {
+                writeln!(text, "      L     DB{data}.DBW{};\n      T     #valeur;\n      L     #valeur;", network * 2)
+                    .expect("a string");
+                writeln!(text, "      SLW   {};\n      T     DB{data}.DBW{};", random.below(15) + 1, network * 2 + 500)
+                    .expect("a string");
+            }
+        }
+        if random.one_in(400) {
+            writeln!(text, "      L     {};\n      L     2;\n      T     DB{data}.DBW800;", random.below(9))
+                .expect("a string");
+        }
+    }
+    text.push_str("END_FUNCTION\n\n");
+}
+
+/// PL7 text as it is pasted: sections, subroutines in structured text and instruction list.
+pub fn pl7(bytes: usize, seed: u64) -> String {
+    let mut random = Random::new(seed);
+    let mut text = String::with_capacity(bytes + 4096);
+    let mut number = 0;
+    while text.len() < bytes {
+        number += 1;
+        if random.one_in(3) {
+            writeln!(text, "IL : MAST - Poste{number} - PRL").expect("a string");
+            for _ in 0..20 + random.below(60) {
+                il_sentence(&mut text, &mut random, number);
+            }
+        } else {
+            writeln!(text, "ST : MAST - Poste{number} - POST").expect("a string");
+            for _ in 0..20 + random.below(60) {
+                st_sentence(&mut text, &mut random, number);
+            }
+        }
+    }
+    text
+}
+
+fn st_sentence(text: &mut String, random: &mut Random, number: u64) {
+    let base = number * 100 % 30000 + random.below(90);
+    writeln!(text, "! (* {} {} *)", random.pick(DEVICES), random.pick(STATES)).expect("a string");
+    let input = format!("%I{}.{}", random.below(8) + 1, random.below(16));
+    match random.below(6) {
+        0 => writeln!(text, "  %MW{base} := %MW{} * 10 + %KW{};", base + 1, random.below(100)).expect("a string"),
+        1 => {
+            writeln!(text, "  IF {input} AND NOT %M{} THEN", random.below(200)).expect("a string");
+            writeln!(text, "    %MW{base} := %MW{base} + 1;\n    SET %M{};\n  ELSE", base + 300).expect("a string");
+            writeln!(text, "    %MW{base} := 0;\n    RESET %M{};\n  END_IF;", base + 300).expect("a string");
+        }
+        2 => {
+            writeln!(text, "  FOR %MW{base} := 0 TO {} DO", random.below(30)).expect("a string");
+            writeln!(text, "    %MW{}[%MW{base}] := %KW{}[%MW{base}];\n  END_FOR;", base + 100, random.below(50))
+                .expect("a string");
+        }
+        3 => writeln!(text, "  %MF{} := SQRT(%MF{}) / 2.5;", base * 2, base * 2 + 2).expect("a string"),
+        4 => writeln!(text, "  %MW{base}:8 := %MW{}:8;", base + 20).expect("a string"),
+        _ => {
+            writeln!(
+                text,
+                "  IF RE {input} AND (%MW{base} >= {}) THEN INC %MW{}; END_IF;",
+                random.below(500),
+                base + 1
+            )
+            .expect("a string");
+        }
+    }
+}
+
+fn il_sentence(text: &mut String, random: &mut Random, number: u64) {
+    writeln!(text, "! (* {} {} *)", random.pick(DEVICES), random.pick(STATES)).expect("a string");
+    let input = format!("%I{}.{}", random.below(8) + 1, random.below(16));
+    let word = number * 100 % 30000 + random.below(90);
+    match random.below(4) {
+        0 => {
+            writeln!(text, "      LD      {input}\n      AND(N   %M{}", random.below(200)).expect("a string");
+            writeln!(text, "      OR      %M{}\n      )\n      ST      %M{}", random.below(200), word + 300)
+                .expect("a string");
+        }
+        1 => {
+            writeln!(text, "      LD      {input}\n      MPS\n      AND     %M{}", random.below(200))
+                .expect("a string");
+            writeln!(text, "      S       %M{}\n      MPP\n      R       %M{}", word + 300, word + 301)
+                .expect("a string");
+        }
+        2 => {
+            writeln!(text, "      LD      [%MW{word}>{}]\n      IN      %TM{}", random.below(500), random.below(60))
+                .expect("a string");
+        }
+        _ => {
+            writeln!(text, "      LD      TRUE\n      [%MW{word}:=%MW{}+{}]", word + 1, random.below(50))
+                .expect("a string");
+        }
+    }
+}

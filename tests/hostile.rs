@@ -1,0 +1,180 @@
+//! Any bytes: the whole pipeline ends, loses nothing, nests safely, and takes linear time.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use plclint::db::{self, Input};
+use plclint::lint::Outcome;
+use plclint::lint::settings::{Folders, Overrides, Settings};
+use plclint::source::decode::Encoding;
+use plclint::source::detect::{self, Dialect, FileHint};
+use plclint::source::split::{self, SplitHint};
+use plclint::syntax;
+use proptest::prelude::*;
+
+const DIALECTS: [Dialect; 5] = [Dialect::Auto, Dialect::Step7, Dialect::Pl7, Dialect::Pl7Il, Dialect::Pl7St];
+
+fn check(bytes: &[u8], dialect: Dialect, encoding: Option<Encoding>) -> Outcome {
+    let hint = FileHint { path: Some(Path::new("hostile.awl")), explicit: true, dialect };
+    let (source, detected) = detect::load(hint, bytes, encoding);
+    let spans = split::split(&source.text, detected, &SplitHint::default());
+    let mut at = 0;
+    for span in &spans {
+        let range = std::ops::Range::<usize>::from(span.range);
+        assert_eq!(range.start, at, "units tile the text");
+        at = range.end;
+        let text = &source.text[range];
+        assert_eq!(syntax::parse(span.language, text).syntax().text(), text, "no byte is lost");
+    }
+    assert_eq!(at, source.text.len());
+    let overrides = Overrides { select: Some(vec!["all".to_owned()]), ..Overrides::default() };
+    let settings = Settings::without_file(Folders::default(), overrides).expect("`all` is a selection");
+    let outcome = db::check(vec![Input { path: "hostile.awl".to_owned(), source, detected }], settings);
+    assert_eq!(outcome.internal_errors, [""; 0]);
+    for it in &outcome.diagnostics {
+        let text = &outcome.files[it.finding.place.file as usize].text;
+        let range = std::ops::Range::<usize>::from(it.finding.place.range);
+        assert!(text.get(range).is_some(), "a finding lies in its file, between characters");
+    }
+    outcome
+}
+
+const AWL: &str = "FUNCTION FC 1 : VOID\nVAR_TEMP\n a : INT;\nEND_VAR\nBEGIN\nNETWORK\nTITLE = x\n U( ;\n O E 0.0;\n ON M 1.1;\n );\n \
+                   L S5T#10S;\n SE T 1;\n SPB M001;\n L DB5.DBW 2;\n L 5;\n +I ;\n T #a;\nM001: CALL FB 1, DB 2 (x := 1);\n BE;\nEND_FUNCTION\n";
+const ST: &str = "ST : MAST - SR1\n! (*x*) %L1: IF RE %M0 AND (%MW2[%MW3]:X4 OR %I1.0) THEN %MW4 := SQRT(%MW5) + 16#FF; \
+                  ELSIF %X1.T > 10 THEN FOR %MW1 := 0 TO 5 DO INC %MW2; EXIT; END_FOR; ELSE JUMP %L1; END_IF;\n";
+const IL: &str = "IL : MAST - SR2\n! %L2: LD %I1.0\n AND(N %M1\n OR([%MW0>5]\n )\n )\n MPS\n ST %Q2.0\n MPP\n [%MW1:=%MW2*3]\n JMPC %L2\n";
+
+fn mutated(base: &'static str) -> impl Strategy<Value = Vec<u8>> {
+    let edits = prop::collection::vec((any::<prop::sample::Index>(), 0_usize..6, any::<u8>()), 1..12);
+    edits.prop_map(move |edits| {
+        let mut bytes = base.as_bytes().to_vec();
+        for (at, what, byte) in edits {
+            let at = at.index(bytes.len() + 1).min(bytes.len().saturating_sub(1));
+            match what {
+                0 => bytes.truncate(at),
+                1 => bytes.insert(at, byte),
+                2 => bytes.insert(at, b'('),
+                3 => bytes.insert(at, b'\n'),
+                4 if !bytes.is_empty() => {
+                    bytes.remove(at);
+                }
+                _ => {
+                    let copy: Vec<u8> = bytes[at..].iter().take(40).copied().collect();
+                    bytes.extend(copy);
+                }
+            }
+            if bytes.is_empty() {
+                bytes.push(byte);
+            }
+        }
+        bytes
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400), dialect in prop::sample::select(&DIALECTS[..])) {
+        check(&bytes, dialect, None);
+    }
+
+    #[test]
+    fn any_text(text in "\\PC{0,200}", dialect in prop::sample::select(&DIALECTS[..])) {
+        check(text.as_bytes(), dialect, None);
+    }
+
+    #[test]
+    fn mutated_code(
+        bytes in prop_oneof![mutated(AWL), mutated(ST), mutated(IL)],
+        dialect in prop::sample::select(&DIALECTS[..]),
+        encoding in prop::sample::select(&[None, Some(Encoding::Windows1252), Some(Encoding::Utf8)][..]),
+    ) {
+        check(&bytes, dialect, encoding);
+    }
+}
+
+#[test]
+fn deep_nesting_is_reported_and_survived() {
+    for text in [
+        "U(\n".repeat(100_000),
+        format!("! %M0 := {}1{};", "(".repeat(100_000), ")".repeat(100_000)),
+        format!("! LD %I1.0\n{}ST %Q2.0", "AND( %M1\n".repeat(100_000)),
+        format!("! {}", "IF %M0 THEN ".repeat(100_000)),
+        format!("! %MW0 := {}1;", "NOT ".repeat(100_000)),
+        format!("! %MW0 := {}1;", "1+".repeat(100_000)),
+        format!("! %MW0{}", "[%MW0".repeat(100_000)),
+        "(*".repeat(100_000),
+        format!("DATA_BLOCK DB 1\n{}", "a : STRUCT\n".repeat(100_000)),
+        format!("L MW {}", "[".repeat(100_000)),
+    ] {
+        for dialect in [Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St] {
+            check(text.as_bytes(), dialect, None);
+        }
+    }
+}
+
+#[test]
+fn odd_files() {
+    for bytes in [
+        vec![0_u8; 100_000],
+        b"\xff\xfeU\0 \0E\0".to_vec(),
+        b"\xef\xbb\xbfU E0.0\n= A4.0".to_vec(),
+        b"\r".repeat(1000),
+        "U E0.0 // \u{e9}\u{2028}\u{85}\n= A4.0".as_bytes().to_vec(),
+        b"U E0.0 // \xe9t\xe9\n= A4.0".to_vec(),
+        b"U".repeat(10_000_000),
+        b"U E 0.0; ".repeat(100_000),
+        b"%M0 := %M1; ".repeat(50_000),
+    ] {
+        for dialect in [Dialect::Auto, Dialect::Step7, Dialect::Pl7St] {
+            check(&bytes, dialect, None);
+        }
+    }
+}
+
+#[test]
+fn lines_of_ten_megabytes() {
+    let mnemonics = syntax::Mnemonics::German;
+    for (line, language) in [
+        ("U E 0.0; ", syntax::Language::Awl(mnemonics)),
+        ("%M0 := %M1; ", syntax::Language::Pl7St),
+        ("LD %M0 ST %M1 ", syntax::Language::Pl7Il),
+        ("%MW0 = = ( ", syntax::Language::Pl7St),
+    ] {
+        let text = line.repeat(10_000_000 / line.len());
+        assert!(syntax::parse(language, &text).syntax().text() == text.as_str());
+    }
+}
+
+/// Twice the text takes about twice the time. The factor is wide, for machines that do other things besides: what it
+/// catches is quadratic growth, which shows as a factor of 16 and more.
+#[test]
+fn time_is_linear() {
+    let shapes: [(&str, Dialect); 8] = [
+        ("U(\nU E 0.0\n)\n= A 4.0\n", Dialect::Step7),
+        ("U E 0.0\nO M 1.0\n", Dialect::Step7),
+        ("L MW 2\nL 5\n+I\nT MW 4\n", Dialect::Step7),
+        ("U E 0.0\nSPB M1\nM2: NOP 0\n", Dialect::Step7),
+        ("U E 0.0\n= M 0.0\nU M 0.0\n= A 4.0\n", Dialect::Step7),
+        ("! %M0 := %M1 OR %M2;\n", Dialect::Pl7St),
+        ("! IF %M0 THEN %MW1 := %MW2 + 1; END_IF;\n", Dialect::Pl7St),
+        ("! LD %M0\nOR %M1\nST %M2\n", Dialect::Pl7Il),
+    ];
+    for (shape, dialect) in shapes {
+        let time = |count: usize| {
+            let text = shape.repeat(count);
+            let mut best = Duration::MAX;
+            for _ in 0..2 {
+                let start = Instant::now();
+                check(text.as_bytes(), dialect, None);
+                best = best.min(start.elapsed());
+            }
+            best
+        };
+        let small = time(250);
+        let large = time(4000);
+        assert!(large < small * 100 + Duration::from_millis(50), "{shape:?}: {small:?} for 250, {large:?} for 4000");
+    }
+}
