@@ -99,9 +99,10 @@ fn part_disturbs(cx: &ProgramCx<'_>, whole: &ObjectUses<'_>, part: &ObjectUses<'
     }
 }
 
-/// Uses outside of start-up blocks.
+/// Uses outside of start-up blocks, without writes that change nothing.
 fn running<'p, 'a>(cx: &'p ProgramCx<'_>, uses: &'p ObjectUses<'a>) -> impl Iterator<Item = &'p GlobalUse<'a>> {
-    uses.uses.iter().filter(|it| !cx.program.is_startup(it.unit))
+    let own_value = |it: &GlobalUse<'_>| it.it.own && it.mode != Mode::Set;
+    uses.uses.iter().filter(move |it| !cx.program.is_startup(it.unit) && !own_value(it))
 }
 
 /// Whether something gives the object a value other than 0.

@@ -31,8 +31,11 @@ pub struct Use {
     pub constant: Option<i64>,
     /// What a store writes.
     pub written: Written,
-    /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever.
+    /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever. For other writes: the object
+    /// takes its own value, so that nothing changes.
     pub own: bool,
+    /// For an assignment: its value depends on the object's own, as that of a circuit that holds itself does.
+    pub holds: bool,
     /// Network or sentence.
     pub network: u32,
     /// For an actual parameter: the call, an index into the unit's calls, and the name of the formal parameter.
@@ -153,7 +156,8 @@ impl UnitFacts {
                     Expr::Bool(value) => Some(i64::from(value)),
                     _ => None,
                 });
-                let own = whens.get(&at).is_some_and(|&it| is_own_absence(model, it, access.object));
+                let own = whens.get(&at).is_some_and(|&it| is_own_absence(model, it, access.object))
+                    || values.get(&at).is_some_and(|&it| is_own_value(model, it, access.object));
                 Use {
                     object: access.object.0,
                     mode: access.mode,
@@ -166,6 +170,7 @@ impl UnitFacts {
                     constant,
                     written: values.get(&at).map_or(Written::Other, |&it| written(&model.exprs, it)),
                     own,
+                    holds: values.get(&at).is_some_and(|&it| depends_on(&model.exprs, it, access.object)),
                     network: statement.map_or(0, |it| it.network),
                     parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
                 }
@@ -203,6 +208,26 @@ fn written(exprs: &Exprs, value: ExprId) -> Written {
         }
         _ => Written::Other,
     }
+}
+
+fn is_own_value(model: &UnitModel, value: ExprId, object: ObjectId) -> bool {
+    matches!(model.exprs.get(value), Expr::Read { object: read, .. } if *read == object)
+}
+
+/// Whether a condition reads the object, looking at its first terms.
+fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
+    const MAX_TERMS: usize = 128;
+    let mut stack = vec![value];
+    for _ in 0..MAX_TERMS {
+        match stack.pop().map(|it| exprs.get(it)) {
+            None => return false,
+            Some(Expr::Read { object: read, .. }) if *read == object => return true,
+            Some(Expr::Not(a)) => stack.push(*a),
+            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b)) => stack.extend([*a, *b]),
+            Some(_) => {}
+        }
+    }
+    false
 }
 
 /// Whether a condition says no more than that the object is 0.

@@ -242,6 +242,11 @@ impl Builder {
         self.called = self.clock;
     }
 
+    /// A call that surely ran has given the object its answer: no access of its own, the call's is.
+    pub(super) fn settle(&mut self, object: ObjectId) {
+        self.write(object, true);
+    }
+
     // Statements.
 
     pub(super) fn statement(&mut self, kind: StatementKind, range: TextRange) -> u32 {
