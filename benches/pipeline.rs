@@ -84,12 +84,14 @@ fn check(criterion: &mut Criterion) {
 fn edit(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("edit to findings");
     for (name, text, detected) in texts(1_000_000) {
-        let (from, others) = if name == "step7" { ("U     E ", ["U     E 1", "UN    E "]) } else { ("INC %MW", ["INC %MW1", "DEC %MW"]) };
+        let (from, others) = if name == "step7" {
+            ("U     E ", ["U     E 1", "UN    E "])
+        } else {
+            ("INC %MW", ["INC %MW1", "DEC %MW"])
+        };
         let middle = text.len() / 2 + text[text.len() / 2..].find(from).expect("the text has such a place");
-        let variants: Vec<String> = others
-            .iter()
-            .map(|to| format!("{}{to}{}", &text[..middle], &text[middle + from.len()..]))
-            .collect();
+        let variants: Vec<String> =
+            others.iter().map(|to| format!("{}{to}{}", &text[..middle], &text[middle + from.len()..])).collect();
         let mut db = RootDatabase::new(Settings::default(), None);
         let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
         input.source.text = text.into();

@@ -50,7 +50,8 @@ fn assert_absent(folder: &str, words: &[&str], except: &[&str]) {
 
 #[test]
 fn syntax_knows_no_other_layer() {
-    let words = ["salsa", "crate::lint", "crate::model", "crate::analysis", "crate::target", "crate::db", "crate::source"];
+    let words =
+        ["salsa", "crate::lint", "crate::model", "crate::analysis", "crate::target", "crate::db", "crate::source"];
     assert_absent("src/syntax", &words, &[]);
 }
 
@@ -58,7 +59,11 @@ fn syntax_knows_no_other_layer() {
 fn the_model_knows_no_rule_and_no_database() {
     assert_absent("src/model", &["salsa", "crate::lint", "crate::analysis", "crate::db", "crate::report"], &[]);
     assert_absent("src/target", &["salsa", "crate::lint", "crate::analysis", "crate::db"], &[]);
-    assert_absent("src/analysis", &["salsa", "crate::lint", "crate::db", "crate::report", "crate::syntax::awl", "crate::syntax::pl7"], &[]);
+    assert_absent(
+        "src/analysis",
+        &["salsa", "crate::lint", "crate::db", "crate::report", "crate::syntax::awl", "crate::syntax::pl7"],
+        &[],
+    );
 }
 
 #[test]

@@ -31,7 +31,8 @@ impl Random {
     }
 }
 
-const DEVICES: &[&str] = &["convoyeur", "pompe", "vanne", "table", "vis", "Rollenbahn", "Hubtisch", "Presse", "gripper"];
+const DEVICES: &[&str] =
+    &["convoyeur", "pompe", "vanne", "table", "vis", "Rollenbahn", "Hubtisch", "Presse", "gripper"];
 const STATES: &[&str] = &["pret", "en marche", "defaut", "bereit", "Störung", "running", "fermé", "ouvert", "Endlage"];
 
 /// STEP 7 blocks in German mnemonics: some `bytes` of them, in one file.
@@ -58,12 +59,14 @@ pub fn step7(bytes: usize, seed: u64) -> String {
 
 fn block(text: &mut String, random: &mut Random, number: u64) {
     let device = random.pick(DEVICES);
-    writeln!(text, "FUNCTION FC {number} : VOID\nTITLE = {device} {number}\nAUTHOR : atelier\nVERSION : 1.0").expect("a string");
+    writeln!(text, "FUNCTION FC {number} : VOID\nTITLE = {device} {number}\nAUTHOR : atelier\nVERSION : 1.0")
+        .expect("a string");
     text.push_str("VAR_TEMP\n  valeur : INT;\n  aide : BOOL;\nEND_VAR\nBEGIN\n");
     let data = number % 16000 + 1;
     for network in 0..8 + random.below(30) {
         let state = random.pick(STATES);
-        writeln!(text, "NETWORK\nTITLE = {device} {state}\n// {state}: voir schéma folio {}", random.below(300)).expect("a string");
+        writeln!(text, "NETWORK\nTITLE = {device} {state}\n// {state}: voir schéma folio {}", random.below(300))
+            .expect("a string");
         let bit = format!("DB{data}.DBX{}.{}", network, random.below(8));
         let input = format!("E {}.{}", random.below(128), random.below(8));
         match random.below(10) {
@@ -73,39 +76,86 @@ fn block(text: &mut String, random: &mut Random, number: u64) {
                 writeln!(text, "      =     {bit};").expect("a string");
             }
             2 => {
-                writeln!(text, "      U(    ;\n      O     {input};\n      O     M {}.{};", random.below(200), random.below(8)).expect("a string");
-                writeln!(text, "      )     ;\n      UN    E {}.{};\n      =     {bit};", random.below(128), random.below(8)).expect("a string");
+                writeln!(
+                    text,
+                    "      U(    ;\n      O     {input};\n      O     M {}.{};",
+                    random.below(200),
+                    random.below(8)
+                )
+                .expect("a string");
+                writeln!(
+                    text,
+                    "      )     ;\n      UN    E {}.{};\n      =     {bit};",
+                    random.below(128),
+                    random.below(8)
+                )
+                .expect("a string");
             }
             3 => {
-                writeln!(text, "      U     {input};\n      S     {bit};\n      UN    {input};\n      R     {bit};").expect("a string");
+                writeln!(text, "      U     {input};\n      S     {bit};\n      UN    {input};\n      R     {bit};")
+                    .expect("a string");
             }
             4 => {
                 let word = network * 2 + 100;
-                writeln!(text, "      L     DB{data}.DBW{word};\n      L     {};\n      +I    ;", random.below(1000)).expect("a string");
+                writeln!(text, "      L     DB{data}.DBW{word};\n      L     {};\n      +I    ;", random.below(1000))
+                    .expect("a string");
                 writeln!(text, "      T     DB{data}.DBW{word};").expect("a string");
             }
             5 => {
-                writeln!(text, "      L     EW {};\n      L     {};\n      >I    ;\n      =     {bit};", random.below(60) * 2, random.below(32000)).expect("a string");
+                writeln!(
+                    text,
+                    "      L     EW {};\n      L     {};\n      >I    ;\n      =     {bit};",
+                    random.below(60) * 2,
+                    random.below(32000)
+                )
+                .expect("a string");
             }
             6 => {
-                writeln!(text, "      U     {input};\n      SPBN  M{network:03};\n      L     MW {};", random.below(100) * 2 + 300).expect("a string");
-                writeln!(text, "      T     DB{data}.DBW{};\nM{network:03}: NOP   0;", network * 2 + 300).expect("a string");
+                writeln!(
+                    text,
+                    "      U     {input};\n      SPBN  M{network:03};\n      L     MW {};",
+                    random.below(100) * 2 + 300
+                )
+                .expect("a string");
+                writeln!(text, "      T     DB{data}.DBW{};\nM{network:03}: NOP   0;", network * 2 + 300)
+                    .expect("a string");
             }
             7 => {
-                writeln!(text, "      U     {input};\n      FP    DB{data}.DBX{}.{};\n      =     #aide;", network + 50, random.below(8)).expect("a string");
-                writeln!(text, "      U     #aide;\n      S     {bit};\n      U     E {}.{};\n      R     {bit};", random.below(128), random.below(8)).expect("a string");
+                writeln!(
+                    text,
+                    "      U     {input};\n      FP    DB{data}.DBX{}.{};\n      =     #aide;",
+                    network + 50,
+                    random.below(8)
+                )
+                .expect("a string");
+                writeln!(
+                    text,
+                    "      U     #aide;\n      S     {bit};\n      U     E {}.{};\n      R     {bit};",
+                    random.below(128),
+                    random.below(8)
+                )
+                .expect("a string");
             }
             8 => {
-                writeln!(text, "      U     {input};\n      L     S5T#{}S;\n      SE    T {};", random.below(90) + 1, random.below(250)).expect("a string");
+                writeln!(
+                    text,
+                    "      U     {input};\n      L     S5T#{}S;\n      SE    T {};",
+                    random.below(90) + 1,
+                    random.below(250)
+                )
+                .expect("a string");
                 writeln!(text, "      U     T {};\n      =     {bit};", random.below(250)).expect("a string");
             }
             _ => {
-                writeln!(text, "      L     DB{data}.DBW{};\n      T     #valeur;\n      L     #valeur;", network * 2).expect("a string");
-                writeln!(text, "      SLW   {};\n      T     DB{data}.DBW{};", random.below(15) + 1, network * 2 + 500).expect("a string");
+                writeln!(text, "      L     DB{data}.DBW{};\n      T     #valeur;\n      L     #valeur;", network * 2)
+                    .expect("a string");
+                writeln!(text, "      SLW   {};\n      T     DB{data}.DBW{};", random.below(15) + 1, network * 2 + 500)
+                    .expect("a string");
             }
         }
         if random.one_in(400) {
-            writeln!(text, "      L     {};\n      L     2;\n      T     DB{data}.DBW800;", random.below(9)).expect("a string");
+            writeln!(text, "      L     {};\n      L     2;\n      T     DB{data}.DBW800;", random.below(9))
+                .expect("a string");
         }
     }
     text.push_str("END_FUNCTION\n\n");
@@ -146,12 +196,19 @@ fn st_sentence(text: &mut String, random: &mut Random, number: u64) {
         }
         2 => {
             writeln!(text, "  FOR %MW{base} := 0 TO {} DO", random.below(30)).expect("a string");
-            writeln!(text, "    %MW{}[%MW{base}] := %KW{}[%MW{base}];\n  END_FOR;", base + 100, random.below(50)).expect("a string");
+            writeln!(text, "    %MW{}[%MW{base}] := %KW{}[%MW{base}];\n  END_FOR;", base + 100, random.below(50))
+                .expect("a string");
         }
         3 => writeln!(text, "  %MF{} := SQRT(%MF{}) / 2.5;", base * 2, base * 2 + 2).expect("a string"),
         4 => writeln!(text, "  %MW{base}:8 := %MW{}:8;", base + 20).expect("a string"),
         _ => {
-            writeln!(text, "  IF RE {input} AND (%MW{base} >= {}) THEN INC %MW{}; END_IF;", random.below(500), base + 1).expect("a string");
+            writeln!(
+                text,
+                "  IF RE {input} AND (%MW{base} >= {}) THEN INC %MW{}; END_IF;",
+                random.below(500),
+                base + 1
+            )
+            .expect("a string");
         }
     }
 }
@@ -163,17 +220,22 @@ fn il_sentence(text: &mut String, random: &mut Random, number: u64) {
     match random.below(4) {
         0 => {
             writeln!(text, "      LD      {input}\n      AND(N   %M{}", random.below(200)).expect("a string");
-            writeln!(text, "      OR      %M{}\n      )\n      ST      %M{}", random.below(200), word + 300).expect("a string");
+            writeln!(text, "      OR      %M{}\n      )\n      ST      %M{}", random.below(200), word + 300)
+                .expect("a string");
         }
         1 => {
-            writeln!(text, "      LD      {input}\n      MPS\n      AND     %M{}", random.below(200)).expect("a string");
-            writeln!(text, "      S       %M{}\n      MPP\n      R       %M{}", word + 300, word + 301).expect("a string");
+            writeln!(text, "      LD      {input}\n      MPS\n      AND     %M{}", random.below(200))
+                .expect("a string");
+            writeln!(text, "      S       %M{}\n      MPP\n      R       %M{}", word + 300, word + 301)
+                .expect("a string");
         }
         2 => {
-            writeln!(text, "      LD      [%MW{word}>{}]\n      IN      %TM{}", random.below(500), random.below(60)).expect("a string");
+            writeln!(text, "      LD      [%MW{word}>{}]\n      IN      %TM{}", random.below(500), random.below(60))
+                .expect("a string");
         }
         _ => {
-            writeln!(text, "      LD      TRUE\n      [%MW{word}:=%MW{}+{}]", word + 1, random.below(50)).expect("a string");
+            writeln!(text, "      LD      TRUE\n      [%MW{word}:=%MW{}+{}]", word + 1, random.below(50))
+                .expect("a string");
         }
     }
 }

@@ -428,3 +428,50 @@ pub fn pin(it: &Use) -> Option<Pin> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use super::*;
+    use crate::model::lower;
+    use crate::syntax::{self, Mnemonics};
+
+    fn facts(text: &str) -> UnitFacts {
+        let language = Language::Awl(Mnemonics::German);
+        let parse = syntax::parse(language, text);
+        assert_eq!(parse.errors(), [], "{text}");
+        UnitFacts::new(&lower::lower(&parse.syntax(), Entity::Listing, language))
+    }
+
+    fn starts(text: &str) -> Vec<u32> {
+        facts(text).uses.iter().filter(|it| it.mode == Mode::Drive(Pin::Start)).map(|it| it.group).collect()
+    }
+
+    #[test]
+    fn a_pin_is_driven_by_0_too() {
+        let groups = starts("U E0.0\nL S5T#5S\nSE T1\nUN E0.0\nL S5T#2S\nSE T1\n");
+        assert_ne!(groups[0], groups[1], "both are executed in each scan");
+        let groups = starts("U E0.0\nSPB A\nU E0.1\nL S5T#5S\nSE T1\nSPA B\nA: U E0.1\nL S5T#2S\nSE T1\nB: NOP 0\n");
+        assert_eq!(groups[0], groups[1], "only one of them is reached");
+    }
+
+    #[test]
+    fn calls_of_one_instance_are_compared_however_many_there_are() {
+        let mut text = String::new();
+        for at in 0..100 {
+            writeln!(text, "U E0.0\nSPB A{at}\nCALL FC {at}\nA{at}: NOP 0").unwrap();
+        }
+        text += "U E1.0\nSPB B\nCALL FB 1, DB 1\nSPA C\nB: CALL FB 1, DB 1\nC: NOP 0\nCALL FB 1, DB 1\n";
+        let facts = facts(&text);
+        assert!(facts.exclusive_calls.contains(&(100, 101)));
+        assert!(!facts.exclusive_calls.contains(&(101, 102)));
+    }
+
+    #[test]
+    fn an_instance_has_its_place() {
+        let facts = facts("CALL FC 2\nCALL FB 1, DB 3\n");
+        assert_eq!(facts.calls[0].instance_anchor, None);
+        assert_eq!(facts.calls[1].instance_anchor, Some(facts.calls[1].anchor + 1));
+    }
+}

@@ -1088,7 +1088,8 @@ impl Machine {
             }
             Op::Shift(shift) => {
                 self.ignores_rlo(range, instr);
-                if instr.operand().is_none() && !matches!(shift, Shift::RotateLeftThroughCc1 | Shift::RotateRightThroughCc1)
+                if instr.operand().is_none()
+                    && !matches!(shift, Shift::RotateLeftThroughCc1 | Shift::RotateRightThroughCc1)
                 {
                     // How far is in accumulator 2.
                     self.want_two(range, instr);
@@ -1645,7 +1646,8 @@ mod tests {
     fn a_function_answers_in_accumulator_1() {
         assert_eq!(names("L MW0\nT MW2\nL MW4"), [""; 0]);
         assert_eq!(names("L MW0\nT MW2\nL MW4\nBE"), [""; 0]);
-        let parse = crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
+        let parse =
+            crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
         let name = BlockName::Number(BlockKind::Ob, 1);
         let model = lower(&parse.syntax(), Entity::Block { kind: BlockKind::Ob, name }, Mnemonics::German);
         assert_eq!(model.oddities.len(), 1, "nobody called it");
@@ -1681,7 +1683,8 @@ mod tests {
     fn words_that_are_no_addresses() {
         assert_eq!(names("U TRUE\nO FALSE\n= A4.0\nLAR1 AR2"), [""; 0]);
         assert_eq!(names("U Depart\n= Lampe_1"), [""; 0], "symbols without their quotes");
-        let malformed = |code: &str| block(code).oddities.iter().filter(|it| matches!(it.kind, OddityKind::Address(_))).count();
+        let malformed =
+            |code: &str| block(code).oddities.iter().filter(|it| matches!(it.kind, OddityKind::Address(_))).count();
         assert_eq!(malformed("U E1\n= A4.0\nU E1\n= A4.1"), 2, "each place");
         assert_eq!(malformed("L MW\nT MW2"), 1);
         assert_eq!(malformed("U I1.0\n= A4.0"), 1);

@@ -27,7 +27,9 @@ pub(super) struct Open {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct State {
+pub(super) struct State<'t> {
+    /// The word that each significant token is: asked for often, told apart once.
+    words: &'t [Option<Keyword>],
     pub(super) dialect: Dialect,
     /// Whether the statement or instruction at hand has been reported already: one error each.
     pub(super) muted: bool,
@@ -42,15 +44,27 @@ pub(super) struct State {
 
 pub(super) struct Grammar<'p, 't> {
     pub(super) p: &'p mut Parser<'t>,
-    pub(super) state: State,
+    pub(super) state: State<'t>,
 }
 
 pub(super) fn parse(text: &str, dialect: Dialect) -> Parse {
     let tokens = lex(text);
     let open_end = tokens.last().is_some_and(|it| it.kind == UnclosedComment);
     let mut parser = Parser::new(text, &tokens);
-    let state =
-        State { dialect, muted: false, open_end, depth: 0, open: Open::default(), next_end: 0, is_scanned: false };
+    let words: Vec<_> = (0..)
+        .map_while(|n| parser.nth(n).map(|kind| (n, kind)))
+        .map(|(n, kind)| if kind == Ident { Keyword::of(parser.nth_text(n)) } else { None })
+        .collect();
+    let state = State {
+        words: &words,
+        dialect,
+        muted: false,
+        open_end,
+        depth: 0,
+        open: Open::default(),
+        next_end: 0,
+        is_scanned: false,
+    };
     Grammar { p: &mut parser, state }.unit();
     parser.finish()
 }
@@ -179,13 +193,13 @@ impl<'t> Grammar<'_, 't> {
         if !self.p.at(Ident) {
             return false;
         }
-        let text = self.p.current_text();
-        match Keyword::of(text) {
+        match self.keyword() {
             Some(Keyword::EndProgram) => true,
             Some(Keyword::Program) => self.p.newline_before(),
             Some(_) => false,
             None => {
-                text.get(..7).is_some_and(|it| it.eq_ignore_ascii_case("PROGRAM")) && self.p.nth(1) == Some(CharString)
+                self.p.nth(1) == Some(CharString)
+                    && self.p.current_text().get(..7).is_some_and(|it| it.eq_ignore_ascii_case("PROGRAM"))
             }
         }
     }
@@ -206,7 +220,11 @@ impl<'t> Grammar<'_, 't> {
     }
 
     pub(super) fn keyword(&self) -> Option<Keyword> {
-        if self.p.at(Ident) { Keyword::of(self.p.current_text()) } else { None }
+        self.nth_keyword(0)
+    }
+
+    pub(super) fn nth_keyword(&self, n: usize) -> Option<Keyword> {
+        self.state.words.get(self.p.position() + n).copied().flatten()
     }
 
     pub(super) fn at_keyword(&self, keyword: Keyword) -> bool {

@@ -283,7 +283,7 @@ impl Grammar<'_, '_> {
         if self.state.next_end < here || !self.state.is_scanned {
             let is_end = |n: usize| match self.p.nth(n) {
                 Some(Semicolon | Bang | SentenceStart | SentenceEnd | LabelAddress) | None => true,
-                Some(Ident) => self.p.nth_newline_before(n) && is_end_word(self.p.nth_text(n)),
+                Some(Ident) => self.p.nth_newline_before(n) && is_end_word(self.nth_keyword(n)),
                 Some(_) => false,
             };
             // The place is kept, so that however many sentences ask, each token is looked at once.
@@ -297,7 +297,7 @@ impl Grammar<'_, '_> {
         let n = usize::from(self.p.at(Semicolon));
         match self.p.nth(n) {
             None | Some(Bang | SentenceStart | SentenceEnd | LabelAddress) => true,
-            Some(Ident) => is_end_word(self.p.nth_text(n)),
+            Some(Ident) => is_end_word(self.nth_keyword(n)),
             _ => false,
         }
     }
@@ -411,6 +411,6 @@ impl Grammar<'_, '_> {
     }
 }
 
-fn is_end_word(text: &str) -> bool {
-    matches!(Keyword::of(text), Some(Keyword::Program | Keyword::EndProgram))
+fn is_end_word(word: Option<Keyword>) -> bool {
+    matches!(word, Some(Keyword::Program | Keyword::EndProgram))
 }

@@ -785,7 +785,7 @@ mod hostile {
             "$'",
             "\r",
         ] {
-            let text = piece.repeat(N / piece.len() / if cfg!(debug_assertions) { 50 } else { 1 });
+            let text = piece.repeat(N / piece.len() / if cfg!(debug_assertions) { 100 } else { 1 });
             survives(&text);
         }
     }

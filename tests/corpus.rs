@@ -1,0 +1,137 @@
+//! The corpus: every finding in it was judged by hand, and a snapshot of each folder keeps it so.
+//!
+//! A folder of `corpus/` that holds programs is checked by itself, as a user would: once with the rules that are on
+//! from the start, once with all of them. `corpus/README.md` says where the programs are from.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use plclint::db::{self, Input};
+use plclint::lint::Outcome;
+use plclint::lint::settings::{Folders, Overrides, Settings};
+use plclint::report::{self, Format, Options};
+use plclint::source::detect::{self, Dialect, FileHint};
+
+/// Programs without a defect, full of what comes close to one.
+const CLEAN: [&str; 2] = ["programs/four-tunnel", "programs/station-pompage"];
+
+/// Listings of the manual that neither name nor content shows to be PL7 for certain: a sentence on one line, code of a
+/// DFB that names no object, an expression alone. They are read when the user says what they are.
+const UNRECOGNISED: [&str; 9] = [
+    "documents/pl7-manual/comparaison-lue.st",
+    "documents/pl7-manual/comparaison.st",
+    "documents/pl7-manual/dfb-boucles.st",
+    "documents/pl7-manual/dfb-compteur.st",
+    "documents/pl7-manual/parentheses.st",
+    "documents/pl7-manual/phrase.st",
+    "documents/pl7-manual/priorite-rem.st",
+    "documents/pl7-manual/priorite.st",
+    "documents/pl7-manual/receptivite.st",
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus")
+}
+
+/// Folders that hold files, and those files, each sorted.
+fn folders() -> Vec<(String, Vec<PathBuf>)> {
+    let mut found = Vec::new();
+    let mut open = vec![root()];
+    while let Some(folder) = open.pop() {
+        let mut files = Vec::new();
+        for entry in fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_none_or(|it| it != "md") {
+                files.push(path);
+            }
+        }
+        if !files.is_empty() {
+            files.sort();
+            found.push((relative(&folder), files));
+        }
+    }
+    found.sort();
+    found
+}
+
+fn relative(path: &Path) -> String {
+    let path = path.strip_prefix(root()).expect("a path of the corpus");
+    path.iter().map(|it| it.to_str().expect("UTF-8")).collect::<Vec<_>>().join("/")
+}
+
+fn load(path: &Path, dialect: Dialect) -> Input {
+    let hint = FileHint { path: Some(path), explicit: false, dialect };
+    let (source, detected) = detect::load(hint, &fs::read(path).expect("a file"), None);
+    Input { path: relative(path), source, detected }
+}
+
+fn check(files: &[PathBuf], select: Option<&str>) -> Outcome {
+    let overrides = Overrides { select: select.map(|it| vec![it.to_owned()]), ..Overrides::default() };
+    let settings = Settings::without_file(Folders::default(), overrides).expect("a selection");
+    let inputs = files.iter().map(|path| {
+        let known = !UNRECOGNISED.contains(&relative(path).as_str());
+        load(path, if known { Dialect::Auto } else { Dialect::Pl7St })
+    });
+    db::check(inputs.collect(), settings)
+}
+
+fn findings(outcome: &Outcome) -> String {
+    let mut out = Vec::new();
+    report::write(Format::Concise, outcome, &Options::default(), &mut out).expect("memory");
+    String::from_utf8(out).expect("UTF-8")
+}
+
+/// The findings that only the larger selection has.
+fn added(larger: &str, smaller: &str) -> String {
+    larger.lines().filter(|line| !smaller.lines().any(|it| it == *line)).map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn findings_are_those_that_were_judged() {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_snapshot_path("corpus");
+    let _bound = settings.bind_to_scope();
+    for (folder, files) in folders() {
+        let default = check(&files, None);
+        let all = check(&files, Some("all"));
+        for outcome in [&default, &all] {
+            assert_eq!(outcome.internal_errors, [""; 0], "{folder}");
+        }
+        let default = findings(&default);
+        let all = added(&findings(&all), &default);
+        let text = if all.is_empty() { default } else { format!("{default}\nwith all rules:\n{all}") };
+        insta::assert_snapshot!(folder.replace('/', "."), text);
+    }
+}
+
+#[test]
+fn every_file_is_read() {
+    let files = folders().into_iter().flat_map(|it| it.1);
+    let left = files.filter(|path| db::family(load(path, Dialect::Auto).detected).is_none());
+    let left: Vec<String> = left.map(|path| relative(&path)).collect();
+    assert_eq!(left, UNRECOGNISED);
+    for (folder, files) in folders() {
+        assert!(check(&files, None).unread.is_empty(), "{folder}");
+    }
+}
+
+#[test]
+fn clean_programs_have_no_finding() {
+    let folders = folders();
+    for name in CLEAN {
+        let (_, files) = folders.iter().find(|it| it.0 == name).expect("a folder of the corpus");
+        assert_eq!(findings(&check(files, None)), "", "{name}");
+    }
+}
+
+/// The corpus would prove nothing if a rule could fall silent on all of it.
+#[test]
+fn a_fault_of_a_document_is_found() {
+    let folders = folders();
+    let (_, files) = folders.iter().find(|it| it.0 == "documents/step7-course/chenillard-fc1").expect("a folder");
+    assert!(findings(&check(files, None)).contains("R001"));
+}
