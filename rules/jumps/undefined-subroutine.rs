@@ -9,7 +9,7 @@ use crate::model::entity::{BlockKind, BlockName};
 use crate::model::unit::Callee;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    if !cx.program.has_main() {
+    if !cx.program.has_main() || cx.program.partial {
         return;
     }
     let names = Names::new(cx.program);

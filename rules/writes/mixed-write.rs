@@ -31,9 +31,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         if uses.is_scratch() && !(0..writes.len()).any(starts_by_set) {
             continue;
         }
-        let Some((second, others)) = drives::conflict(cx.program, &writes, |a, b| stored(a) != stored(b)) else {
-            continue;
-        };
+        // A reset below the assignment in the same unit takes part of the assigned condition back.
+        let corrects = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| a.unit == b.unit && b.mode == Mode::Reset;
+        let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| stored(a) != stored(b) && !corrects(a, b);
+        let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) else { continue };
         let label = match second.mode {
             Mode::Set | Mode::Reset => format!("{} here, where the assignment does not reach", second.mode.verb()),
             _ => "assigned here, whatever was set or reset before".to_owned(),

@@ -25,9 +25,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         let mut writes: Vec<GlobalUse<'_>> = uses.with_mode(Mode::assigns).copied().collect();
         // A bit that only takes the outputs of calls which nobody wants is a waste basket.
-        let is_sink = uses.object.class != Class::Output
-            && !uses.is_read()
-            && writes.iter().all(|it| it.mode == Mode::Output);
+        let is_sink =
+            uses.object.class != Class::Output && !uses.is_read() && writes.iter().all(|it| it.mode == Mode::Output);
         if writes.is_empty() || is_sink {
             continue;
         }

@@ -46,9 +46,8 @@ pub fn conflict<'a>(
         .copied()
         .collect();
     let compared = &uses[..uses.len().min(MAX_COMPARED)];
-    let at = (1..compared.len()).find(|&at| {
-        compared[..at].iter().any(|it| opposed(it, &compared[at]) && program.clash(it, &compared[at]))
-    })?;
+    let at = (1..compared.len())
+        .find(|&at| compared[..at].iter().any(|it| opposed(it, &compared[at]) && program.clash(it, &compared[at])))?;
     let others = uses.iter().enumerate().filter(|it| it.0 != at).map(|it| *it.1).collect();
     Some((uses[at], others))
 }

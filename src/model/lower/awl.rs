@@ -281,6 +281,7 @@ impl Machine {
         self.keep_accumulators();
         self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];
         self.open.shared = Some(None);
+        self.b.model.has_gaps = true;
         self.b.wipe_by_call();
         if !self.b.is_reachable() {
             // A label may be part of it.

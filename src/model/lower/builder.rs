@@ -81,6 +81,7 @@ impl Builder {
             instructions: 0,
             reads_indirectly: false,
             writes_indirectly: false,
+            has_gaps: false,
         };
         Self {
             model,
