@@ -9,6 +9,7 @@ use super::settings::Settings;
 use super::suppress::Leftover;
 use crate::analysis::program::ProgramIndex;
 use crate::model::UnitModel;
+use crate::model::pl7_kinds::Kinds;
 use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
 use crate::target::Target;
 
@@ -20,6 +21,7 @@ pub struct UnitCx<'a> {
     pub settings: &'a Settings,
     pub target: &'a Target,
     nodes: OnceCell<FxHashMap<SyntaxKind, Vec<SyntaxNode>>>,
+    kinds: OnceCell<Kinds>,
 }
 
 impl<'a> UnitCx<'a> {
@@ -30,7 +32,7 @@ impl<'a> UnitCx<'a> {
         settings: &'a Settings,
         target: &'a Target,
     ) -> Self {
-        Self { model, parse, text, settings, target, nodes: OnceCell::new() }
+        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: OnceCell::new() }
     }
 
     /// Every node of a kind, in the order of the text. The tree is walked once for all rules.
@@ -48,6 +50,11 @@ impl<'a> UnitCx<'a> {
     /// Whether the author left parts of the unit out (`...`), as listings in documents do.
     pub fn leaves_out(&self) -> bool {
         self.parse.syntax().descendants_with_tokens().any(|it| it.kind() == SyntaxKind::Elision)
+    }
+
+    /// Kinds of values of PL7 expressions. The tree is walked once for all rules.
+    pub fn kinds(&self) -> &Kinds {
+        self.kinds.get_or_init(|| Kinds::new(&self.parse.syntax()))
     }
 
     /// Text of a place; empty when the range is not one.
