@@ -50,6 +50,9 @@ pub struct SourceFile {
 pub struct Project {
     #[returns(deref)]
     pub files: Vec<SourceFile>,
+    /// Folders that also hold code of a kind that is not read: what lies there is no whole program.
+    #[returns(deref)]
+    pub partly_read: Vec<String>,
     #[returns(ref)]
     pub settings: Settings,
 }
@@ -126,7 +129,20 @@ pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitModel {
 /// Firewall: what the unit tells its program, without places.
 #[salsa::tracked]
 pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitFacts {
-    UnitFacts::new(model(db, unit))
+    let mut facts = UnitFacts::new(model(db, unit));
+    let tree = tree(db, unit);
+    facts.has_gaps |=
+        unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, &tree.syntax());
+    facts
+}
+
+/// Whether the unit is PL7 text that does not say what it is: a listing shown in a document, part of something unread.
+fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: &syntax::SyntaxNode) -> bool {
+    let file = unit.file(db);
+    matches!(file.detected(db), Detected::Pasted(_))
+        && *unit.entity(db) != Entity::Container
+        && db.project().settings(db).entity_address(file.path(db)).is_none()
+        && !root.children().any(|it| it.kind() == SyntaxKind::Heading)
 }
 
 /// Findings of the rules that look at one unit, with ranges relative to it.
@@ -181,7 +197,7 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
             alone.push((family, file));
             continue;
         }
-        let folder = file.path(db).rsplit_once('/').map_or("", |it| it.0).to_owned();
+        let folder = folder_of(file.path(db)).to_owned();
         let at = *index.entry((folder.clone(), family)).or_insert_with(|| {
             folders.push((folder, family, Vec::new()));
             folders.len() - 1
@@ -207,6 +223,10 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
         programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file]));
     }
     programs.into_boxed_slice()
+}
+
+fn folder_of(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |it| it.0)
 }
 
 /// The vendor family of a file that is linted.
@@ -237,7 +257,11 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let settings = project.settings(db);
     let target = target_of(settings, program.family(db));
     let facts = program_units(db, program).iter().map(|&unit| facts(db, unit)).collect();
-    let index = ProgramIndex::new(program.family(db), facts);
+    let mut index = ProgramIndex::new(program.family(db), facts);
+    let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
+    if program.files(db).iter().any(|it| project.partly_read(db).contains(&folder(it))) {
+        index.leave_incomplete();
+    }
     let cx = ProgramCx::new(&index, settings, &target);
     run_rules(settings, |rule, findings| match rule.check {
         Check::Program(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
@@ -432,7 +456,7 @@ impl RootDatabase {
             })
         });
         let mut db = Self { project: None, storage: salsa::Storage::new(log) };
-        db.project = Some(Project::new(&db, Vec::new(), settings));
+        db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings));
         db
     }
 
@@ -506,7 +530,11 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     inputs.dedup_by(|a, b| a.path == b.path);
     let mut outcome = Outcome { active: settings.active(), ..Outcome::default() };
     let (linted, left): (Vec<Input>, Vec<Input>) = inputs.into_iter().partition(|it| family(it.detected).is_some());
+    let mut partly_read: Vec<String> = Vec::new();
     for it in left {
+        if matches!(it.detected, Detected::Unsupported { what, .. } if detect::unsupported::is_code(what)) {
+            partly_read.push(folder_of(&it.path).to_owned());
+        }
         let reason = match it.detected {
             Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),
             _ => UnreadReason::NotPlc,
@@ -517,6 +545,8 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     let mut db = RootDatabase::new(settings, None);
     // One run, one revision: nothing is ever evicted, and the lock of the least-recently-used list is not taken.
     tree::set_lru_capacity(&mut db, 0);
+    partly_read.dedup();
+    db.project().set_partly_read(&mut db).to(partly_read);
     let files = db.set_files(linted);
     files.par_iter().for_each_with(db.clone(), |db, &file| {
         for &unit in units(db, file) {

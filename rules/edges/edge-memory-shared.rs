@@ -54,6 +54,5 @@ fn judge(cx: &ProgramCx<'_>, object: &Object, mut uses: Vec<GlobalUse<'_>>, sink
         _ => format!("`{}` is the memory of more than one edge", object.text),
     };
     let others = others.iter().chain([&second]).filter(|it| it.site() != place.site());
-    sink.report(place.site(), message)
-        .related_all(others.map(|it| (it.site(), format!("{} here", it.mode.verb()))));
+    sink.report(place.site(), message).related_all(others.map(|it| (it.site(), format!("{} here", it.mode.verb()))));
 }

@@ -1,28 +1,42 @@
 //! J004: a jump to an earlier place.
 
+use std::collections::BTreeMap;
+
 use rowan::TextRange;
+use rustc_hash::FxHashMap;
 
 use crate::lint::{Severity, Sink, UnitCx};
 use crate::model::UnitModel;
 use crate::model::expr::Exprs;
-use crate::model::unit::{Loop, LoopKind, StatementKind};
+use crate::model::unit::{Jump, Loop, LoopKind, StatementKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let model = cx.model;
-    for jump in &model.jumps {
-        let back = |it: &&Loop| it.kind == LoopKind::Jump && it.keyword == jump.range;
-        let Some(it) = model.loops.iter().find(back) else { continue };
-        let Some(target) = jump.target.and_then(|it| model.labels.get(it as usize)) else { continue };
-        if model.statements.get(jump.statement as usize).is_some_and(|it| it.path == Exprs::FALSE) {
-            continue;
+    let mut jumps: FxHashMap<TextRange, &Jump> = model.jumps.iter().map(|it| (it.range, it)).collect();
+    // Jumps back by their label, in the order of the labels.
+    let mut loops: BTreeMap<u32, Vec<(&Jump, &Loop)>> = BTreeMap::new();
+    for it in model.loops.iter().filter(|it| it.kind == LoopKind::Jump) {
+        let Some(jump) = jumps.remove(&it.keyword) else { continue };
+        let reached = model.statements.get(jump.statement as usize).is_some_and(|it| it.path != Exprs::FALSE);
+        if let Some(target) = jump.target.filter(|_| reached) {
+            loops.entry(target).or_default().push((jump, it));
         }
-        let report = if it.exits || can_leave(model, it) {
-            sink.report(jump.range, format!("jump back to `{}`", jump.text))
-        } else {
-            sink.report(jump.range, format!("jump back to `{}`, and nothing leaves the loop", jump.text))
+    }
+    for (target, back) in loops {
+        let Some(label) = model.labels.get(target as usize) else { continue };
+        // The widest loop holds the others: where nothing leaves it, nothing leaves them.
+        let Some(&(last, widest)) = back.last() else { continue };
+        let endless = !widest.exits && !can_leave(model, widest);
+        let (place, others) = if endless { (last, &back[..back.len() - 1]) } else { (back[0].0, &back[1..]) };
+        let report = if endless {
+            sink.report(place.range, format!("jump back to `{}`, and nothing leaves the loop", place.text))
                 .severity(Severity::Error)
+        } else {
+            sink.report(place.range, format!("jump back to `{}`", place.text))
         };
-        report.related(target.range, "the loop starts here");
+        report
+            .related(label.range, "the loop starts here")
+            .related_all(others.iter().map(|it| (it.0.range, "also from here".to_owned())));
     }
 }
 

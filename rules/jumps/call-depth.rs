@@ -1,7 +1,7 @@
 //! J010: calls nested deeper than the controller allows.
 
-use crate::analysis::calls;
 use crate::analysis::Site;
+use crate::analysis::calls;
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {

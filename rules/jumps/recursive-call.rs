@@ -1,7 +1,7 @@
 //! J011: a cycle of calls.
 
-use crate::analysis::calls;
 use crate::analysis::Site;
+use crate::analysis::calls;
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
@@ -12,7 +12,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             [] => format!("`{}` calls itself", cx.program.entity(last.unit)),
             _ => format!("the call of `{}` closes a cycle of {} calls", last.it.text, cycle.len()),
         };
-        let steps = before.iter().map(|it| (it.site(), format!("{} calls `{}`", cx.program.entity(it.unit), it.it.text)));
+        let steps =
+            before.iter().map(|it| (it.site(), format!("{} calls `{}`", cx.program.entity(it.unit), it.it.text)));
         let report = sink.report(last.site(), message).related_all(steps);
         if cycle.iter().any(|it| it.it.conditional) {
             report.note("a condition may end the cycle; nothing limits it to the levels that the controller has");

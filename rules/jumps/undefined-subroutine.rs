@@ -1,6 +1,6 @@
 //! J008: a call of a subroutine or block that the program does not contain.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::analysis::Site;
 use crate::analysis::program::{GlobalCall, ProgramIndex};
@@ -9,7 +9,7 @@ use crate::model::entity::{BlockKind, BlockName};
 use crate::model::unit::Callee;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    if !cx.program.has_main() {
+    if !cx.program.has_main() || cx.program.partial {
         return;
     }
     let names = Names::new(cx.program);
@@ -38,15 +38,18 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// which only the symbol table ties.
 struct Names {
     defined: usize,
+    /// Blocks whose instance data is there: they were there when it was made.
+    instances: FxHashSet<BlockName>,
     by_number: bool,
     by_symbol: bool,
 }
 
 impl Names {
     fn new(program: &ProgramIndex<'_>) -> Self {
-        let mut names = Self { defined: 0, by_number: false, by_symbol: false };
+        let mut names = Self { defined: 0, instances: FxHashSet::default(), by_number: false, by_symbol: false };
         for facts in &program.units {
             let entity = &facts.entity;
+            names.instances.extend(facts.instance_of.clone());
             if entity.subroutine().is_some() || matches!(entity.block_kind(), Some(BlockKind::Fb | BlockKind::Fc)) {
                 names.defined += 1;
                 names.by_number |= matches!(entity.name(), Some(BlockName::Number(..)));
@@ -60,6 +63,7 @@ impl Names {
     fn would_have(&self, callee: &Callee) -> bool {
         match callee {
             Callee::Subroutine(_) => true,
+            Callee::Block(name) if self.instances.contains(name) => false,
             Callee::Block(BlockName::Number(BlockKind::Fb | BlockKind::Fc, _)) => !self.by_symbol,
             Callee::Block(BlockName::Symbol(_)) => !self.by_number,
             _ => false,

@@ -15,16 +15,22 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !program.writes_indirectly() && !program.has_unresolved(Mode::writes) {
         let given = bytes_given(cx);
         let unwritten = one_sided(cx, |it| it.is_read(), |it| it.is_written());
-        let unwritten: Vec<u32> =
-            unwritten.into_iter().filter(|&it| !given.iter().any(|byte| covers(*byte, &program.objects[it as usize]))).collect();
+        let unwritten: Vec<u32> = unwritten
+            .into_iter()
+            .filter(|&it| !given.iter().any(|byte| covers(*byte, &program.objects[it as usize])))
+            .collect();
         for group in unwritten.chunk_by(|&a, &b| same_byte(cx, a, b)) {
-            report(cx, group, "read", "written", sink).note(
-                "this assumes that no operator panel, other station or clock byte of the CPU writes it",
-            );
+            report(cx, group, "read", "written", sink)
+                .note("this assumes that no operator panel, other station or clock byte of the CPU writes it");
         }
     }
     if !program.reads_indirectly() && !program.has_unresolved(Mode::reads) {
-        let unread = one_sided(cx, |it| it.is_written(), |it| it.is_read());
+        // An output that nobody wants has to go somewhere: what only takes such outputs is a waste basket.
+        let unread = one_sided(
+            cx,
+            |it| it.with_mode(|it| it.writes() && it != Mode::Output).next().is_some(),
+            |it| it.is_read(),
+        );
         for group in unread.chunk_by(|&a, &b| same_byte(cx, a, b)) {
             report(cx, group, "written", "read", sink)
                 .severity(Severity::Advice)
@@ -69,7 +75,9 @@ fn report<'s>(
     }
     uses.sort_by_key(|(_, it)| (cx.program.order[it.unit as usize], it.it.anchor));
     let (object, first) = uses[0];
-    let others = uses[1..].iter().map(|(object, it)| (it.site(), format!("`{}` is {} here", object.object.text, it.mode.verb())));
+    let others = uses[1..]
+        .iter()
+        .map(|(object, it)| (it.site(), format!("`{}` is {} here", object.object.text, it.mode.verb())));
     sink.report(first.site(), format!("`{}` is {done} and never {missing}", object.object.text)).related_all(others)
 }
 

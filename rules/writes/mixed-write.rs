@@ -4,7 +4,7 @@ use crate::analysis::Site;
 use crate::analysis::drives;
 use crate::analysis::program::GlobalUse;
 use crate::lint::{ProgramCx, Sink};
-use crate::model::object::{Class, Type};
+use crate::model::object::{Area, Class, Type};
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
@@ -12,7 +12,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let is_bit = uses.object.ty == Type::Bool || uses.object.class == Class::Symbol;
         let is_block = uses.uses.iter().any(|it| matches!(it.mode, Mode::Drive(_)));
         let driven = matches!(uses.object.class, Class::Output | Class::Memory | Class::Data | Class::Symbol);
-        if !is_bit || is_block || !driven || !uses.object.is_fixed() {
+        // The open data block may be another one at each place.
+        let known = uses.object.is_fixed() && uses.object.footprint.area != Area::OpenData;
+        if !is_bit || is_block || !driven || !known {
             continue;
         }
         let stored = |it: &GlobalUse<'_>| matches!(it.mode, Mode::Set | Mode::Reset);
@@ -20,8 +22,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         if writes.is_empty() {
             continue;
         }
-        // A constant that is assigned under a condition stores it, as set and reset do.
-        writes.extend(uses.with_mode(Mode::assigns).filter(|it| it.it.constant.is_none()));
+        // A constant, and a circuit that holds itself, store the bit as set and reset do.
+        writes.extend(uses.with_mode(Mode::assigns).filter(|it| it.it.constant.is_none() && !it.it.holds));
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
         // A scratch value that each unit assigns before it sets or resets it.
@@ -29,9 +31,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         if uses.is_scratch() && !(0..writes.len()).any(starts_by_set) {
             continue;
         }
-        let Some((second, others)) = drives::conflict(cx.program, &writes, |a, b| stored(a) != stored(b)) else {
-            continue;
-        };
+        // A reset below the assignment in the same unit takes part of the assigned condition back.
+        let corrects = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| a.unit == b.unit && b.mode == Mode::Reset;
+        let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| stored(a) != stored(b) && !corrects(a, b);
+        let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) else { continue };
         let label = match second.mode {
             Mode::Set | Mode::Reset => format!("{} here, where the assignment does not reach", second.mode.verb()),
             _ => "assigned here, whatever was set or reset before".to_owned(),

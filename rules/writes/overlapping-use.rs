@@ -1,7 +1,6 @@
 //! W006: memory written under one address and used under another.
 
 use crate::analysis::Site;
-use crate::analysis::facts::Written;
 use crate::analysis::program::{GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Area, Class, Object, Type};
@@ -43,7 +42,10 @@ fn report(cx: &ProgramCx<'_>, members: &[usize], sink: &mut Sink<'_, Site>) {
     uses.sort_by_key(|(_, it)| (cx.program.order[it.unit as usize], it.it.anchor));
     let is_write = |it: &&(usize, GlobalUse<'_>)| it.1.mode.writes();
     let Some(first) = uses.iter().find(is_write) else { return };
-    let clashes = |a: usize, b: usize| a != b && in_conflict(cx, &objects[a], &objects[b]);
+    let clashes = |a: usize, b: usize| {
+        let share = objects[a].object.footprint.overlaps(&objects[b].object.footprint);
+        a != b && share && in_conflict(cx, &objects[a.min(b)], &objects[a.max(b)])
+    };
     // The write that changes what another address holds; where one address alone is written, that write.
     let second = uses.iter().filter(is_write).find(|it| clashes(it.0, first.0)).unwrap_or(first);
     let Some(other) = uses.iter().find(|it| clashes(it.0, second.0)) else { return };
@@ -51,9 +53,11 @@ fn report(cx: &ProgramCx<'_>, members: &[usize], sink: &mut Sink<'_, Site>) {
     let others = uses.iter().filter(|it| it.1.site() != second.1.site());
     sink.report(second.1.site(), format!("`{name}` shares memory with `{other}`"))
         .label(format!("changes part of `{other}`"))
-        .related_all(others.map(|(object, it)| {
-            (it.site(), format!("`{}` is {} here", objects[*object].object.text, it.mode.verb()))
-        }));
+        .related_all(
+            others.map(|(object, it)| {
+                (it.site(), format!("`{}` is {} here", objects[*object].object.text, it.mode.verb()))
+            }),
+        );
 }
 
 /// Whether two objects that share memory disturb each other. `a` starts first, or is the wider of two that start together.
@@ -78,30 +82,22 @@ fn in_conflict(cx: &ProgramCx<'_>, a: &ObjectUses<'_>, b: &ObjectUses<'_>) -> bo
     }
 }
 
-/// Whether a part is written by its own address while the whole has a value of its own.
+/// Whether a part is written by its own address while the program gives the whole a value that it computes with. A whole
+/// that is only copied in and out is an image of its parts.
 fn part_disturbs(cx: &ProgramCx<'_>, whole: &ObjectUses<'_>, part: &ObjectUses<'_>) -> bool {
     // Tables are made to be used as a whole and by element. Word stores over output bits are W001's and W002's, edge
     // memory is E009's.
     let outputs = whole.object.class == Class::Output && part.object.ty == Type::Bool;
-    if whole.object.ty.is_table() || outputs || part.uses.iter().any(|it| it.mode == Mode::EdgeMemory) {
-        return false;
-    }
-    let stores = || running(cx, whole).filter(|it| it.mode == Mode::Store);
-    if whole.number {
-        // A value that is computed with, given by the program itself.
-        stores().any(|it| it.it.constant != Some(0)) && changes(cx, part)
-    } else {
-        let given = stores().any(|it| matches!(it.it.written, Written::Copy | Written::Number));
-        // A whole that also takes patterns, or is put together from its parts elsewhere, is a field of bits.
-        let is_field = stores().any(|it| it.it.written == Written::Other);
-        let changed = running(cx, part).any(|it| it.mode.writes() && it.mode != Mode::Reset && it.it.constant.is_none());
-        given && !is_field && changed
-    }
+    let edge_memory = || part.uses.iter().any(|it| it.mode == Mode::EdgeMemory);
+    let gives = |it: &GlobalUse<'_>| it.mode == Mode::Store && it.it.constant != Some(0);
+    let candidate = whole.number && !whole.object.ty.is_table() && !outputs;
+    candidate && running(cx, whole).any(gives) && changes(cx, part) && !edge_memory()
 }
 
-/// Uses outside of start-up blocks.
+/// Uses outside of start-up blocks, without writes that change nothing.
 fn running<'p, 'a>(cx: &'p ProgramCx<'_>, uses: &'p ObjectUses<'a>) -> impl Iterator<Item = &'p GlobalUse<'a>> {
-    uses.uses.iter().filter(|it| !cx.program.is_startup(it.unit))
+    let own_value = |it: &GlobalUse<'_>| it.it.own && it.mode != Mode::Set;
+    uses.uses.iter().filter(move |it| !cx.program.is_startup(it.unit) && !own_value(it))
 }
 
 /// Whether something gives the object a value other than 0.

@@ -12,7 +12,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let is_bit = match uses.object.class {
             Class::Output | Class::Memory => uses.object.ty == Type::Bool,
             // Only bits are assigned conditions.
-            Class::Symbol => true,
+            Class::Symbol => uses.uses.iter().any(|it| matches!(it.mode, Mode::Assign | Mode::AssignNot)),
             _ => false,
         };
         if !is_bit {
@@ -25,15 +25,14 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         let mut writes: Vec<GlobalUse<'_>> = uses.with_mode(Mode::assigns).copied().collect();
         // A bit that only takes the outputs of calls which nobody wants is a waste basket.
-        let is_sink = uses.object.class != Class::Output
-            && !uses.is_read()
-            && writes.iter().all(|it| it.mode == Mode::Output);
+        let is_sink =
+            uses.object.class != Class::Output && !uses.is_read() && writes.iter().all(|it| it.mode == Mode::Output);
         if writes.is_empty() || is_sink {
             continue;
         }
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
-        if let Some((second, others)) = drives::conflict(cx.program, &writes, |_, _| true) {
+        if let Some((second, others)) = drives::conflict(cx.program, &writes, drives::override_each_other) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))
                 .label("assigned here too, which overrides the other")
                 .related_all(others.iter().map(|it| (it.site(), format!("also {} here", it.mode.verb()))));

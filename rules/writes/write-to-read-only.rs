@@ -27,10 +27,9 @@ fn forbidden(object: &Object, access: &Access) -> Option<(&'static str, &'static
         (_, Class::Step | Class::MacroStep) => None,
         (Rights::ReadOnly(source), class) => Some((describe(class), source)),
         (_, Class::PeripheralInput) => Some(("a peripheral input", "the vendor's general documentation")),
-        (_, Class::Timer | Class::Counter) => Some((
-            "a timer or counter",
-            "S7:475-628: only its own instructions drive it",
-        )),
+        (_, Class::Timer | Class::Counter) => {
+            Some(("a timer or counter", "S7:475-628: only its own instructions drive it"))
+        }
         _ => None,
     }
 }

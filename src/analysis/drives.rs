@@ -17,13 +17,22 @@ pub fn covering<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours
     found
 }
 
+/// Whether one of two assignments undoes the other. Two constants under a condition store a value, as set and reset do,
+/// and equal constants are one value.
+pub fn override_each_other(a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
+    match (a.it.constant, b.it.constant) {
+        (Some(x), Some(y)) => x != y && !a.it.conditional && !b.it.conditional,
+        _ => true,
+    }
+}
+
 /// Sorts places as the controller comes across them.
 pub fn in_order(program: &ProgramIndex<'_>, uses: &mut [GlobalUse<'_>]) {
     uses.sort_by_key(|it| (program.order[it.unit as usize], it.it.anchor));
 }
 
-/// The second place of the first two that can take effect in one scan, and all others. `uses` are in order; what only
-/// runs at start-up is overwritten on purpose.
+/// The second place of the first two that can take effect in one scan, and all others. `uses` are in order. What only
+/// runs at start-up is overwritten on purpose, and what gives an object its own value changes nothing: left out.
 pub fn conflict<'a>(
     program: &ProgramIndex<'_>,
     uses: &[GlobalUse<'a>],
@@ -31,7 +40,11 @@ pub fn conflict<'a>(
 ) -> Option<(GlobalUse<'a>, Vec<GlobalUse<'a>>)> {
     /// Of more driving places of one object, only so many are compared.
     const MAX_COMPARED: usize = 256;
-    let uses: Vec<GlobalUse<'a>> = uses.iter().filter(|it| !program.is_startup(it.unit)).copied().collect();
+    let uses: Vec<GlobalUse<'a>> = uses
+        .iter()
+        .filter(|it| !program.is_startup(it.unit) && !(it.it.own && it.mode != Mode::Set))
+        .copied()
+        .collect();
     let compared = &uses[..uses.len().min(MAX_COMPARED)];
     let at = (1..compared.len())
         .find(|&at| compared[..at].iter().any(|it| opposed(it, &compared[at]) && program.clash(it, &compared[at])))?;

@@ -29,26 +29,15 @@ pub struct Use {
     pub conditional: bool,
     /// For writes: the constant that is written, when it is one.
     pub constant: Option<i64>,
-    /// What a store writes.
-    pub written: Written,
-    /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever.
+    /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever. For other writes: the object
+    /// takes its own value, so that nothing changes.
     pub own: bool,
+    /// For an assignment: its value depends on the object's own, as that of a circuit that holds itself does.
+    pub holds: bool,
     /// Network or sentence.
     pub network: u32,
     /// For an actual parameter: the call, an index into the unit's calls, and the name of the formal parameter.
     pub parameter: Option<(u32, SmolStr)>,
-}
-
-/// What a store writes, as far as the unit's code tells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Written {
-    Constant,
-    /// The value of another object, as it is.
-    Copy,
-    /// The result of arithmetic.
-    Number,
-    /// A bit pattern, a conversion, what a call or an accumulator left: anything.
-    Other,
 }
 
 /// An object of the unit with how its value is used.
@@ -105,6 +94,8 @@ pub struct UnitFacts {
     /// Some place computed at run time is read (or written): any object may be.
     pub reads_indirectly: bool,
     pub writes_indirectly: bool,
+    /// The unit, or some of it, was not understood: what seems to be missing may stand there.
+    pub has_gaps: bool,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -153,7 +144,8 @@ impl UnitFacts {
                     Expr::Bool(value) => Some(i64::from(value)),
                     _ => None,
                 });
-                let own = whens.get(&at).is_some_and(|&it| is_own_absence(model, it, access.object));
+                let own = whens.get(&at).is_some_and(|&it| is_own_absence(model, it, access.object))
+                    || values.get(&at).is_some_and(|&it| is_own_value(model, it, access.object));
                 Use {
                     object: access.object.0,
                     mode: access.mode,
@@ -164,8 +156,8 @@ impl UnitFacts {
                         || by_call
                         || whens.get(&at).is_some_and(|&it| it != Exprs::TRUE),
                     constant,
-                    written: values.get(&at).map_or(Written::Other, |&it| written(&model.exprs, it)),
                     own,
+                    holds: values.get(&at).is_some_and(|&it| depends_on(&model.exprs, it, access.object)),
                     network: statement.map_or(0, |it| it.network),
                     parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
                 }
@@ -189,20 +181,29 @@ impl UnitFacts {
             instructions: model.instructions,
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
+            has_gaps: model.has_gaps,
         }
     }
 }
 
-fn written(exprs: &Exprs, value: ExprId) -> Written {
-    match exprs.get(value) {
-        Expr::Bool(_) | Expr::Int(_) | Expr::Float(_) | Expr::Text(_) => Written::Constant,
-        Expr::Read { .. } => Written::Copy,
-        Expr::Negate(_)
-        | Expr::Binary(Operator::Add | Operator::Sub | Operator::Mul | Operator::Div | Operator::Rem, ..) => {
-            Written::Number
+fn is_own_value(model: &UnitModel, value: ExprId, object: ObjectId) -> bool {
+    matches!(model.exprs.get(value), Expr::Read { object: read, .. } if *read == object)
+}
+
+/// Whether a condition reads the object, looking at its first terms.
+fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
+    const MAX_TERMS: usize = 128;
+    let mut stack = vec![value];
+    for _ in 0..MAX_TERMS {
+        match stack.pop().map(|it| exprs.get(it)) {
+            None => return false,
+            Some(Expr::Read { object: read, .. }) if *read == object => return true,
+            Some(Expr::Not(a)) => stack.push(*a),
+            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b)) => stack.extend([*a, *b]),
+            Some(_) => {}
         }
-        _ => Written::Other,
     }
+    false
 }
 
 /// Whether a condition says no more than that the object is 0.

@@ -105,6 +105,8 @@ pub struct ProgramIndex<'a> {
     /// Whether the program has a cyclic entry point and every block that it calls: only then does the absence of a
     /// write, a read or a call say something.
     pub complete: bool,
+    /// Some of the program was not read or not understood.
+    pub partial: bool,
     exclusive: FxHashSet<(u32, u32, u32)>,
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
@@ -138,7 +140,21 @@ impl<'a> ProgramIndex<'a> {
             .flat_map(|(unit, facts)| facts.exclusive_uses.iter().map(move |&(a, b)| (unit, a, b)))
             .collect();
         let objects = collect(&units, &order, &calls);
-        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive, exclusive_uses, names }
+        let partial = units.iter().any(|it| it.has_gaps);
+        Self {
+            family,
+            units,
+            objects,
+            calls,
+            callers,
+            contexts,
+            order,
+            complete,
+            partial,
+            exclusive,
+            exclusive_uses,
+            names,
+        }
     }
 
     /// Whether two writes of one object can both take effect in one scan.
@@ -198,6 +214,12 @@ impl<'a> ProgramIndex<'a> {
 
     pub fn entity(&self, unit: u32) -> &Entity {
         &self.units[unit as usize].entity
+    }
+
+    /// Says that part of the program was not read: files of a language that is not understood.
+    pub fn leave_incomplete(&mut self) {
+        self.complete = false;
+        self.partial = true;
     }
 
     /// Whether the program's cyclic entry point was read: OB 1, a section of MAST.
@@ -383,7 +405,7 @@ fn has_main(units: &[&UnitFacts]) -> bool {
 
 /// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
 fn is_complete(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
-    let entry = has_main(units);
+    let entry = has_main(units) && !units.iter().any(|it| it.has_gaps);
     let closed = calls.iter().all(|call| match &call.it.callee {
         Callee::Block(BlockName::Number(kind, _)) if kind.is_system() => true,
         Callee::Subroutine(_) | Callee::Block(_) => call.target.is_some(),

@@ -449,6 +449,8 @@ pub struct UnitModel {
     /// Some place computed at run time is read (or written): any object may be.
     pub reads_indirectly: bool,
     pub writes_indirectly: bool,
+    /// Some instruction or statement was not understood: it may do anything.
+    pub has_gaps: bool,
 }
 
 impl UnitModel {

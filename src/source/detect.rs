@@ -118,6 +118,11 @@ pub mod unsupported {
     pub const SYMBOLS: &str = "STEP 7 symbol table";
     pub const IEC: &str = "IEC 61131-3 text that is not PL7";
     pub const SFC: &str = "IEC 61131-3 textual SFC";
+
+    /// Whether such a file holds code that may use any object and call any block.
+    pub fn is_code(what: &str) -> bool {
+        !matches!(what, VARIABLES | SYMBOLS)
+    }
 }
 
 /// The meaning of an extension.

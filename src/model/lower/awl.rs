@@ -281,6 +281,7 @@ impl Machine {
         self.keep_accumulators();
         self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];
         self.open.shared = Some(None);
+        self.b.model.has_gaps = true;
         self.b.wipe_by_call();
         if !self.b.is_reachable() {
             // A label may be part of it.
@@ -895,9 +896,20 @@ impl Machine {
             arguments,
             full: op == Op::Call,
         };
+        let answers: Vec<ObjectId> = call
+            .arguments
+            .iter()
+            .filter(|it| it.name.as_ref().is_some_and(|it| it.eq_ignore_ascii_case("RET_VAL")))
+            .filter_map(|it| it.object)
+            .collect();
         self.b.call(call, range);
         if !system {
             self.b.wipe_by_call();
+        }
+        if when == Exprs::TRUE {
+            for object in answers {
+                self.b.settle(object);
+            }
         }
         self.keep_accumulators();
         self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];

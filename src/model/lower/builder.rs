@@ -81,6 +81,7 @@ impl Builder {
             instructions: 0,
             reads_indirectly: false,
             writes_indirectly: false,
+            has_gaps: false,
         };
         Self {
             model,
@@ -240,6 +241,11 @@ impl Builder {
     pub(super) fn wipe_by_call(&mut self) {
         self.wipe();
         self.called = self.clock;
+    }
+
+    /// A call that surely ran has given the object its answer: no access of its own, the call's is.
+    pub(super) fn settle(&mut self, object: ObjectId) {
+        self.write(object, true);
     }
 
     // Statements.
