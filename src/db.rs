@@ -136,10 +136,11 @@ pub fn unit_findings<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Ran<TextRange> {
     let settings = project.settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
     let target = target_of(settings, family);
+    let language = unit.language(db);
     let cx = UnitCx::new(model(db, unit), tree(db, unit), unit.text(db), settings, &target);
     run_rules(settings, |rule, findings| match rule.check {
-        Check::Unit(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
-        Check::Program(_) | Check::File(_) => {}
+        Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
+        Check::Unit(_) | Check::Program(_) | Check::File(_) => {}
     })
 }
 

@@ -13,12 +13,15 @@ struct Example {
     line: usize,
     dialect: Dialect,
     bad: bool,
+    /// ```` ```awl,bad,CPU 314 ````: checked for that controller.
+    controller: Option<String>,
     text: String,
 }
 
 fn examples(rule: &Rule) -> Vec<Example> {
     let mut examples = Vec::new();
     let mut open: Option<Example> = None;
+    let mut skip = false;
     for (line, text) in rule.page.lines().enumerate() {
         if let Some(example) = &mut open {
             if text.trim_end() == "```" {
@@ -26,8 +29,19 @@ fn examples(rule: &Rule) -> Vec<Example> {
             } else {
                 writeln!(example.text, "{text}").expect("a string");
             }
+        } else if skip {
+            skip = text.trim_end() != "```";
         } else if let Some(info) = text.strip_prefix("```") {
             let (language, verdict) = info.split_once(',').unwrap_or((info, ""));
+            if language == "toml" {
+                // A setting, not a program: its lines hold no fence.
+                skip = true;
+                continue;
+            }
+            let (verdict, controller) = match verdict.split_once(',') {
+                Some((verdict, controller)) => (verdict, Some(controller.to_owned())),
+                None => (verdict, None),
+            };
             let dialect = match language {
                 "awl" => Dialect::Step7,
                 "il" => Dialect::Pl7Il,
@@ -36,7 +50,7 @@ fn examples(rule: &Rule) -> Vec<Example> {
                 other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
             };
             assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
-            open = Some(Example { line: line + 1, dialect, bad: verdict == "bad", text: String::new() });
+            open = Some(Example { line: line + 1, dialect, bad: verdict == "bad", controller, text: String::new() });
         }
     }
     assert!(open.is_none(), "{}: an example is not closed", rule.name);
@@ -44,7 +58,8 @@ fn examples(rule: &Rule) -> Vec<Example> {
 }
 
 fn found(example: &Example) -> Vec<(&'static str, String)> {
-    let overrides = Overrides { select: Some(vec!["all".to_owned()]), ..Overrides::default() };
+    let controller = example.controller.clone();
+    let overrides = Overrides { select: Some(vec!["all".to_owned()]), controller, ..Overrides::default() };
     let settings = Settings::without_file(Folders::default(), overrides).expect("`all` is a selection");
     let extension = if example.dialect == Dialect::Step7 { "awl" } else { "txt" };
     let input = Input::from_text(&format!("example.{extension}"), &example.text, example.dialect);

@@ -29,10 +29,26 @@ pub struct Use {
     pub conditional: bool,
     /// For writes: the constant that is written, when it is one.
     pub constant: Option<i64>,
+    /// What a store writes.
+    pub written: Written,
+    /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever.
+    pub own: bool,
     /// Network or sentence.
     pub network: u32,
     /// For an actual parameter: the call, an index into the unit's calls, and the name of the formal parameter.
     pub parameter: Option<(u32, SmolStr)>,
+}
+
+/// What a store writes, as far as the unit's code tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Written {
+    Constant,
+    /// The value of another object, as it is.
+    Copy,
+    /// The result of arithmetic.
+    Number,
+    /// A bit pattern, a conversion, what a call or an accumulator left: anything.
+    Other,
 }
 
 /// An object of the unit with how its value is used.
@@ -78,6 +94,9 @@ pub struct UnitFacts {
     pub calls: Vec<FactCall>,
     /// Pairs of calls, by index, that never run in the same scan.
     pub exclusive_calls: Vec<(u32, u32)>,
+    /// Pairs of uses, by anchor, the smaller first, that never take effect in the same scan: of a set, reset or edge
+    /// memory with another write of its object. [`Use::group`] says it of the other writes.
+    pub exclusive_uses: Vec<(u32, u32)>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
     /// Parameters and variables that the block declares.
@@ -134,6 +153,7 @@ impl UnitFacts {
                     Expr::Bool(value) => Some(i64::from(value)),
                     _ => None,
                 });
+                let own = whens.get(&at).is_some_and(|&it| is_own_absence(model, it, access.object));
                 Use {
                     object: access.object.0,
                     mode: access.mode,
@@ -144,6 +164,8 @@ impl UnitFacts {
                         || by_call
                         || whens.get(&at).is_some_and(|&it| it != Exprs::TRUE),
                     constant,
+                    written: values.get(&at).map_or(Written::Other, |&it| written(&model.exprs, it)),
+                    own,
                     network: statement.map_or(0, |it| it.network),
                     parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
                 }
@@ -157,6 +179,7 @@ impl UnitFacts {
             uses,
             calls: calls(model),
             exclusive_calls: exclusive_calls(model),
+            exclusive_uses: exclusive_uses(model, &values),
             instance_of: model.instance_of.clone(),
             declared: model
                 .declarations
@@ -168,6 +191,24 @@ impl UnitFacts {
             writes_indirectly: model.writes_indirectly,
         }
     }
+}
+
+fn written(exprs: &Exprs, value: ExprId) -> Written {
+    match exprs.get(value) {
+        Expr::Bool(_) | Expr::Int(_) | Expr::Float(_) | Expr::Text(_) => Written::Constant,
+        Expr::Read { .. } => Written::Copy,
+        Expr::Negate(_)
+        | Expr::Binary(Operator::Add | Operator::Sub | Operator::Mul | Operator::Div | Operator::Rem, ..) => {
+            Written::Number
+        }
+        _ => Written::Other,
+    }
+}
+
+/// Whether a condition says no more than that the object is 0.
+fn is_own_absence(model: &UnitModel, when: ExprId, object: ObjectId) -> bool {
+    let Expr::Not(inner) = model.exprs.get(when) else { return false };
+    matches!(model.exprs.get(*inner), Expr::Read { object: read, .. } if *read == object)
 }
 
 /// Which objects are computed with.
@@ -233,6 +274,29 @@ fn groups(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> FxHashMap<u32, 
     groups
 }
 
+fn exclusive_uses(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> Vec<(u32, u32)> {
+    let stores = |it: Mode| matches!(it, Mode::Set | Mode::Reset | Mode::EdgeMemory);
+    let mut writes: FxHashMap<ObjectId, Vec<(u32, &Access)>> = FxHashMap::default();
+    for (at, access) in (0..).zip(&model.accesses) {
+        if stores(access.mode) || access.mode.assigns() {
+            writes.entry(access.object).or_default().push((at, access));
+        }
+    }
+    let mut pairs = Vec::new();
+    for list in writes.into_values().filter(|it| it.len() > 1) {
+        for (at, second) in list.iter().take(MAX_COMPARED).enumerate() {
+            for first in &list[..at] {
+                let either = stores(first.1.mode) || stores(second.1.mode);
+                if either && same_drive(model, values, *first, *second) {
+                    pairs.push((first.1.anchor.min(second.1.anchor), first.1.anchor.max(second.1.anchor)));
+                }
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs
+}
+
 /// Whether two writes of one object count as one: never both in a scan, or a constant default that a later,
 /// conditional write of the same unit overrides.
 fn same_drive(
@@ -260,6 +324,7 @@ fn same_drive(
 /// instruction acts whatever its condition.
 fn effective(model: &UnitModel, write: (u32, &Access), path: ExprId) -> (ExprId, ExprId) {
     let when = match model.statement(write.1).map(|it| &it.kind) {
+        Some(StatementKind::Set { when, .. } | StatementKind::Reset { when, .. }) => *when,
         Some(StatementKind::Call(call)) => model.calls.get(*call as usize).map_or(Exprs::TRUE, |it| it.when),
         _ => Exprs::TRUE,
     };
@@ -336,5 +401,52 @@ pub fn pin(it: &Use) -> Option<Pin> {
     match it.mode {
         Mode::Drive(pin) => Some(pin),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use super::*;
+    use crate::model::lower;
+    use crate::syntax::{self, Mnemonics};
+
+    fn facts(text: &str) -> UnitFacts {
+        let language = Language::Awl(Mnemonics::German);
+        let parse = syntax::parse(language, text);
+        assert_eq!(parse.errors(), [], "{text}");
+        UnitFacts::new(&lower::lower(&parse.syntax(), Entity::Listing, language))
+    }
+
+    fn starts(text: &str) -> Vec<u32> {
+        facts(text).uses.iter().filter(|it| it.mode == Mode::Drive(Pin::Start)).map(|it| it.group).collect()
+    }
+
+    #[test]
+    fn a_pin_is_driven_by_0_too() {
+        let groups = starts("U E0.0\nL S5T#5S\nSE T1\nUN E0.0\nL S5T#2S\nSE T1\n");
+        assert_ne!(groups[0], groups[1], "both are executed in each scan");
+        let groups = starts("U E0.0\nSPB A\nU E0.1\nL S5T#5S\nSE T1\nSPA B\nA: U E0.1\nL S5T#2S\nSE T1\nB: NOP 0\n");
+        assert_eq!(groups[0], groups[1], "only one of them is reached");
+    }
+
+    #[test]
+    fn calls_of_one_instance_are_compared_however_many_there_are() {
+        let mut text = String::new();
+        for at in 0..100 {
+            writeln!(text, "U E0.0\nSPB A{at}\nCALL FC {at}\nA{at}: NOP 0").unwrap();
+        }
+        text += "U E1.0\nSPB B\nCALL FB 1, DB 1\nSPA C\nB: CALL FB 1, DB 1\nC: NOP 0\nCALL FB 1, DB 1\n";
+        let facts = facts(&text);
+        assert!(facts.exclusive_calls.contains(&(100, 101)));
+        assert!(!facts.exclusive_calls.contains(&(101, 102)));
+    }
+
+    #[test]
+    fn an_instance_has_its_place() {
+        let facts = facts("CALL FC 2\nCALL FB 1, DB 3\n");
+        assert_eq!(facts.calls[0].instance_anchor, None);
+        assert_eq!(facts.calls[1].instance_anchor, Some(facts.calls[1].anchor + 1));
     }
 }

@@ -2,7 +2,9 @@
 //!
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
+pub mod calls;
 pub mod conditions;
+pub mod drives;
 pub mod facts;
 pub mod program;
 

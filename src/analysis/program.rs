@@ -106,6 +106,7 @@ pub struct ProgramIndex<'a> {
     /// write, a read or a call say something.
     pub complete: bool,
     exclusive: FxHashSet<(u32, u32, u32)>,
+    exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
 }
 
@@ -132,8 +133,21 @@ impl<'a> ProgramIndex<'a> {
             .enumerate()
             .flat_map(|(unit, facts)| facts.exclusive_calls.iter().map(move |&(a, b)| (as_index(unit), a, b)))
             .collect();
+        let exclusive_uses = (0..)
+            .zip(&units)
+            .flat_map(|(unit, facts)| facts.exclusive_uses.iter().map(move |&(a, b)| (unit, a, b)))
+            .collect();
         let objects = collect(&units, &order, &calls);
-        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive, names }
+        Self { family, units, objects, calls, callers, contexts, order, complete, exclusive, exclusive_uses, names }
+    }
+
+    /// Whether two writes of one object can both take effect in one scan.
+    pub fn clash(&self, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
+        if a.unit != b.unit {
+            return self.same_scan(a.unit, b.unit);
+        }
+        let pair = (a.unit, a.it.anchor.min(b.it.anchor), a.it.anchor.max(b.it.anchor));
+        a.it.group != b.it.group && !self.exclusive_uses.contains(&pair)
     }
 
     /// Whether two units can run in the same scan of the same context.
@@ -184,6 +198,37 @@ impl<'a> ProgramIndex<'a> {
 
     pub fn entity(&self, unit: u32) -> &Entity {
         &self.units[unit as usize].entity
+    }
+
+    /// Whether the program's cyclic entry point was read: OB 1, a section of MAST.
+    pub fn has_main(&self) -> bool {
+        has_main(&self.units)
+    }
+
+    /// Whether only start-up blocks run the unit: once, before the first scan.
+    pub fn is_startup(&self, unit: u32) -> bool {
+        self.contexts[unit as usize] == [Context::Startup]
+    }
+
+    /// Whether some unit writes a place computed at run time: the absence of another write says nothing then.
+    pub fn writes_indirectly(&self) -> bool {
+        self.units.iter().any(|it| it.writes_indirectly)
+            || self.objects.iter().any(|it| !it.object.is_fixed() && it.is_written())
+    }
+
+    /// Whether some unit reads a place computed at run time.
+    pub fn reads_indirectly(&self) -> bool {
+        self.units.iter().any(|it| it.reads_indirectly)
+            || self.objects.iter().any(|it| !it.object.is_fixed() && it.is_read())
+    }
+
+    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address.
+    pub fn has_unresolved(&self, wanted: impl Fn(Mode) -> bool) -> bool {
+        self.objects.iter().any(|it| {
+            matches!(it.object.footprint.area, Area::Symbol(_))
+                && !it.uses.iter().any(|it| matches!(it.mode, Mode::Drive(_)))
+                && it.uses.iter().any(|it| wanted(it.mode))
+        })
     }
 
     /// Heading of a unit.
@@ -327,13 +372,18 @@ fn order(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
     order
 }
 
-/// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
-fn is_complete(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
-    let entry = units.iter().any(|it| match &it.entity {
+/// Whether the units hold the program's cyclic entry point.
+fn has_main(units: &[&UnitFacts]) -> bool {
+    units.iter().any(|it| match &it.entity {
         Entity::Pl7 { part: Part::Main, .. } => true,
         Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. } => true,
         _ => false,
-    });
+    })
+}
+
+/// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
+fn is_complete(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
+    let entry = has_main(units);
     let closed = calls.iter().all(|call| match &call.it.callee {
         Callee::Block(BlockName::Number(kind, _)) if kind.is_system() => true,
         Callee::Subroutine(_) | Callee::Block(_) => call.target.is_some(),

@@ -9,6 +9,7 @@ use super::settings::Settings;
 use super::suppress::Leftover;
 use crate::analysis::program::ProgramIndex;
 use crate::model::UnitModel;
+use crate::model::pl7_kinds::Kinds;
 use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
 use crate::target::Target;
 
@@ -20,6 +21,7 @@ pub struct UnitCx<'a> {
     pub settings: &'a Settings,
     pub target: &'a Target,
     nodes: OnceCell<FxHashMap<SyntaxKind, Vec<SyntaxNode>>>,
+    kinds: OnceCell<Kinds>,
 }
 
 impl<'a> UnitCx<'a> {
@@ -30,7 +32,7 @@ impl<'a> UnitCx<'a> {
         settings: &'a Settings,
         target: &'a Target,
     ) -> Self {
-        Self { model, parse, text, settings, target, nodes: OnceCell::new() }
+        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: OnceCell::new() }
     }
 
     /// Every node of a kind, in the order of the text. The tree is walked once for all rules.
@@ -45,6 +47,16 @@ impl<'a> UnitCx<'a> {
         nodes.get(&kind).map_or(&[], Vec::as_slice)
     }
 
+    /// Whether the author left parts of the unit out (`...`), as listings in documents do.
+    pub fn leaves_out(&self) -> bool {
+        self.parse.syntax().descendants_with_tokens().any(|it| it.kind() == SyntaxKind::Elision)
+    }
+
+    /// Kinds of values of PL7 expressions. The tree is walked once for all rules.
+    pub fn kinds(&self) -> &Kinds {
+        self.kinds.get_or_init(|| Kinds::new(&self.parse.syntax()))
+    }
+
     /// Text of a place; empty when the range is not one.
     pub fn text_of(&self, range: TextRange) -> &'a str {
         self.text.get(usize::from(range.start())..usize::from(range.end())).unwrap_or_default()
@@ -57,16 +69,30 @@ pub struct ProgramCx<'a> {
     pub settings: &'a Settings,
     pub target: &'a Target,
     overlaps: OnceCell<Vec<(u32, u32)>>,
+    neighbours: OnceCell<FxHashMap<u32, Vec<u32>>>,
 }
 
 impl<'a> ProgramCx<'a> {
     pub(crate) fn new(program: &'a ProgramIndex<'a>, settings: &'a Settings, target: &'a Target) -> Self {
-        Self { program, settings, target, overlaps: OnceCell::new() }
+        Self { program, settings, target, overlaps: OnceCell::new(), neighbours: OnceCell::new() }
     }
 
     /// See [`ProgramIndex::overlaps`].
     pub fn overlaps(&self) -> &[(u32, u32)] {
         self.overlaps.get_or_init(|| self.program.overlaps())
+    }
+
+    /// Other objects that share memory with an object, all by index.
+    pub fn neighbours(&self, object: u32) -> &[u32] {
+        let neighbours = self.neighbours.get_or_init(|| {
+            let mut neighbours: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+            for &(a, b) in self.overlaps() {
+                neighbours.entry(a).or_default().push(b);
+                neighbours.entry(b).or_default().push(a);
+            }
+            neighbours
+        });
+        neighbours.get(&object).map_or(&[], Vec::as_slice)
     }
 }
 

@@ -5,6 +5,7 @@ use rowan::TextRange;
 use super::context::{FileCx, ProgramCx, UnitCx};
 use super::finding::{Finding, Severity, Sink};
 use crate::analysis::Site;
+use crate::syntax::Language;
 
 /// What a rule looks at, which decides when it runs again after an edit.
 #[derive(Clone, Copy)]
@@ -67,6 +68,18 @@ impl Rule {
     /// The page's section `## What it does`.
     pub fn what(&self) -> &'static str {
         section(self.page, "What it does")
+    }
+
+    /// Whether units of a language are among what the rule looks at.
+    pub fn is_for(&self, language: Language) -> bool {
+        self.dialects.iter().any(|dialect| match *dialect {
+            "all" => true,
+            "pl7" => matches!(language, Language::Pl7Il | Language::Pl7St),
+            "il" => language == Language::Pl7Il,
+            "st" => language == Language::Pl7St,
+            "s7" => matches!(language, Language::Awl(_)),
+            _ => false,
+        })
     }
 
     /// The page's section `## Why`.

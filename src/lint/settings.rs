@@ -16,6 +16,7 @@ use super::finding::Severity;
 use super::rule::{Rule, rules};
 use super::select::{Selection, Selector};
 use crate::source::decode::Encoding;
+use crate::source::walk::WalkOptions;
 
 /// Name of the configuration file.
 pub const FILE_NAME: &str = "plclint.toml";
@@ -31,8 +32,6 @@ struct Inner {
     overrides: Overrides,
     base: Selection,
     per_file: Vec<PerFileRules>,
-    include: Option<Gitignore>,
-    exclude: Option<Gitignore>,
     entities: Vec<(Gitignore, usize)>,
     encoding: Option<Encoding>,
 }
@@ -72,8 +71,6 @@ impl Default for Settings {
             overrides: Overrides::default(),
             base,
             per_file: Vec::new(),
-            include: None,
-            exclude: None,
             entities: Vec::new(),
             encoding: None,
         }))
@@ -258,21 +255,10 @@ impl Text<'_> {
         Selector::parse(registry, word.get_ref()).map_err(|it| self.error(Some(word.span()), it.to_string()))
     }
 
-    fn globs(&self, globs: &[Spanned<String>]) -> Result<Option<Gitignore>, ConfigError> {
-        if globs.is_empty() {
-            return Ok(None);
-        }
-        let mut builder = GitignoreBuilder::new("");
-        for glob in globs {
-            if let Err(error) = builder.add_line(None, glob.get_ref()) {
-                return Err(self.error(Some(glob.span()), error.to_string()));
-            }
-        }
-        builder.build().map(Some).map_err(|it| self.error(None, it.to_string()))
-    }
-
     fn glob(&self, glob: &Spanned<String>) -> Result<Gitignore, ConfigError> {
-        Ok(self.globs(std::slice::from_ref(glob))?.unwrap_or_else(Gitignore::empty))
+        let mut builder = GitignoreBuilder::new("");
+        let built = builder.add_line(None, glob.get_ref()).and_then(|it| it.build());
+        built.map_err(|it| self.error(Some(glob.span()), it.to_string()))
     }
 }
 
@@ -332,19 +318,11 @@ impl Settings {
         for (index, hint) in file.entity.iter().enumerate() {
             entities.push((text.glob(&hint.path)?, index));
         }
-        let include = text.globs(&file.files.include)?;
-        let exclude = text.globs(&file.files.exclude)?;
-        Ok(Self(Arc::new(Inner {
-            folders,
-            file,
-            overrides,
-            base,
-            per_file,
-            include,
-            exclude,
-            entities,
-            encoding: forced,
-        })))
+        // The walk of folders compiles them again; here, an error has a place.
+        for globs in [&file.files.include, &file.files.exclude] {
+            globs.iter().try_for_each(|it| text.glob(it).map(drop))?;
+        }
+        Ok(Self(Arc::new(Inner { folders, file, overrides, base, per_file, entities, encoding: forced })))
     }
 
     /// Which rules are on for a file.
@@ -432,18 +410,15 @@ impl Settings {
         self.0.file.entity.get(*index).map(|it| it.address.as_str())
     }
 
-    /// Whether a file found in a folder takes part: it matches `include`, when there is one, and not `exclude`. A
-    /// file outside the configuration's folder always does.
-    pub fn includes(&self, path: &str) -> bool {
-        let Some(path) = self.relative(path) else { return true };
-        self.0.include.as_ref().is_none_or(|it| matches(it, &path))
-            && !self.0.exclude.as_ref().is_some_and(|it| matches(it, &path))
-    }
-
-    /// Whether a folder is excluded as a whole, so that there is no need to look into it.
-    pub fn excludes_folder(&self, path: &str) -> bool {
-        let (Some(exclude), Some(path)) = (&self.0.exclude, self.relative(path)) else { return false };
-        !path.as_os_str().is_empty() && exclude.matched_path_or_any_parents(&path, true).is_ignore()
+    /// Which files a walk of folders finds.
+    pub fn walk_options(&self) -> WalkOptions {
+        let words = |it: &[Spanned<String>]| it.iter().map(|it| it.get_ref().clone()).collect();
+        WalkOptions {
+            root: self.0.folders.root.clone(),
+            include: words(&self.0.file.files.include),
+            exclude: words(&self.0.file.files.exclude),
+            gitignore: true,
+        }
     }
 
     /// A path below the configuration's folder, from there.
@@ -615,15 +590,17 @@ mod tests {
 
     #[test]
     fn globs_start_at_the_configuration() {
-        let settings = parse("[files]\ninclude = ['/line1/**']\nexclude = ['old/', '*.bak']").unwrap();
-        assert!(settings.includes("a.st"));
-        assert!(settings.includes("/plant/line1/a.st"));
-        assert!(!settings.includes("../line2/a.st"));
-        assert!(!settings.includes("old/a.st"));
-        assert!(!settings.includes("a.bak"));
-        assert!(settings.includes("/elsewhere/old/a.st"), "outside the configuration's folder");
-        assert!(settings.excludes_folder("old"));
-        assert!(!settings.excludes_folder("."));
+        let text =
+            "[[per-file]]\npath = '/line1/old/'\nignore = ['all']\n[files]\ninclude = ['src']\nexclude = ['old/']";
+        let settings = parse(text).unwrap();
+        let is_on = |path: &str| settings.enabled(rule("W001"), path).is_some();
+        assert!(!is_on("old/a.st") && !is_on("./x/../old/sub/a.st") && !is_on("/plant/line1/old/a.st"));
+        assert!(is_on("../old/a.st") && is_on("/elsewhere/line1/old/a.st") && is_on("old"));
+        let options = settings.walk_options();
+        assert_eq!(
+            (options.root, options.include, options.exclude),
+            ("/plant".into(), vec!["src".into()], vec!["old/".into()])
+        );
     }
 
     #[test]

@@ -122,6 +122,14 @@ impl Entity {
         }
     }
 
+    /// Name of a Siemens block.
+    pub fn name(&self) -> Option<&BlockName> {
+        match self {
+            Self::Block { name, .. } => Some(name),
+            _ => None,
+        }
+    }
+
     pub fn block_kind(&self) -> Option<BlockKind> {
         match self {
             Self::Block { kind, .. } => Some(*kind),

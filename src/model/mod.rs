@@ -7,6 +7,7 @@ pub mod expr;
 pub mod literal;
 pub mod lower;
 pub mod object;
+pub mod pl7_kinds;
 pub mod unit;
 
 pub use unit::UnitModel;

@@ -18,7 +18,8 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, Mode, OddityKind, Pin, Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, LoopKind, Mode, OddityKind, Pin, Section,
+    StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Relation, Shift};
@@ -867,7 +868,14 @@ impl Machine {
                     }
                     Some(object)
                 }
-                Operand::Constant(_) | Operand::Other => None,
+                Operand::Constant(_) | Operand::Other => {
+                    // A pointer to an area: the called block reads or writes there, and how much is not known here.
+                    if points_to_area(&bare_text(&value)) {
+                        self.b.model.reads_indirectly = true;
+                        self.b.model.writes_indirectly = true;
+                    }
+                    None
+                }
             };
             arguments.push(Argument { name, object, range });
         }
@@ -1069,7 +1077,8 @@ impl Machine {
             }
             Op::Shift(shift) => {
                 self.ignores_rlo(range, instr);
-                if instr.operand().is_none() && !matches!(shift, Shift::RotateLeftThroughCc1 | Shift::RotateRightThroughCc1)
+                if instr.operand().is_none()
+                    && !matches!(shift, Shift::RotateLeftThroughCc1 | Shift::RotateRightThroughCc1)
                 {
                     // How far is in accumulator 2.
                     self.want_two(range, instr);
@@ -1146,7 +1155,12 @@ impl Machine {
             Op::Loop => {
                 self.opaque_result();
                 let when = self.b.exprs().opaque();
+                let before = self.b.model.loops.len();
                 self.jump(instr, when, range);
+                // LOOP counts down to 0, which a plain jump does not.
+                for it in &mut self.b.model.loops[before..] {
+                    it.kind = LoopKind::For;
+                }
             }
         }
     }
@@ -1451,6 +1465,12 @@ fn indirect_type(text: &str) -> Type {
     }
 }
 
+/// `P#M100.0BYTE10`, `P#DB5.DBX0.0WORD4`: a pointer that names its area, unlike `P#4.0`.
+fn points_to_area(text: &str) -> bool {
+    let pointer = text.strip_prefix("P#").or_else(|| text.strip_prefix("p#"));
+    pointer.is_some_and(|it| it.starts_with(|it: char| it.is_ascii_alphabetic()))
+}
+
 /// `FC1`, `DB 5`, `"Motor"`: a block's name. SFC and SFB included.
 fn block_name(text: &str) -> Option<BlockName> {
     if text.starts_with(['"', '«']) {
@@ -1615,7 +1635,8 @@ mod tests {
     fn a_function_answers_in_accumulator_1() {
         assert_eq!(names("L MW0\nT MW2\nL MW4"), [""; 0]);
         assert_eq!(names("L MW0\nT MW2\nL MW4\nBE"), [""; 0]);
-        let parse = crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
+        let parse =
+            crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
         let name = BlockName::Number(BlockKind::Ob, 1);
         let model = lower(&parse.syntax(), Entity::Block { kind: BlockKind::Ob, name }, Mnemonics::German);
         assert_eq!(model.oddities.len(), 1, "nobody called it");
@@ -1651,7 +1672,8 @@ mod tests {
     fn words_that_are_no_addresses() {
         assert_eq!(names("U TRUE\nO FALSE\n= A4.0\nLAR1 AR2"), [""; 0]);
         assert_eq!(names("U Depart\n= Lampe_1"), [""; 0], "symbols without their quotes");
-        let malformed = |code: &str| block(code).oddities.iter().filter(|it| matches!(it.kind, OddityKind::Address(_))).count();
+        let malformed =
+            |code: &str| block(code).oddities.iter().filter(|it| matches!(it.kind, OddityKind::Address(_))).count();
         assert_eq!(malformed("U E1\n= A4.0\nU E1\n= A4.1"), 2, "each place");
         assert_eq!(malformed("L MW\nT MW2"), 1);
         assert_eq!(malformed("U I1.0\n= A4.0"), 1);

@@ -12,11 +12,11 @@ use super::pl7::{self, Kind, Pl7};
 use crate::model::UnitModel;
 use crate::model::entity::{Entity, Part};
 use crate::model::expr::{ExprId, Exprs, ObjectId};
-use crate::model::object::{self, Class, Type};
-use crate::model::unit::{Leave, Mode, OddityKind, Pin};
+use crate::model::object::{self, Class, Object, Type};
+use crate::model::unit::{Leave, Mode, Oddity, OddityKind, Pin};
 use crate::syntax::pl7::ast::{self, BracketContent, IlOperand};
 use crate::syntax::pl7::instructions::IlOp;
-use crate::syntax::{Language, SyntaxNode};
+use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
 pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
@@ -28,9 +28,11 @@ pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
         result: None,
         test: None,
         parentheses: Vec::new(),
+        inside: Vec::new(),
         stack: Vec::new(),
+        mismatches: Vec::new(),
         block: None,
-        deepest: 0,
+        forgotten: false,
     };
     lowering.pl7.b.set_back_targets(pl7::back_targets(root));
     if let Some(root) = ast::Root::cast(root.clone()) {
@@ -38,7 +40,7 @@ pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
             lowering.sentence(&sentence);
         }
     }
-    lowering.close_block();
+    lowering.close_block(None);
     lowering.pl7.b.finish()
 }
 
@@ -50,7 +52,8 @@ struct Parenthesis {
 
 /// A `BLK ... OUT_BLK ... END_BLK`.
 struct Block {
-    object: ObjectId,
+    /// `None` where the operand is missing or no block.
+    object: Option<ObjectId>,
     text: SmolStr,
     range: TextRange,
     outputs: bool,
@@ -64,45 +67,74 @@ struct Lowering {
     /// Tests whose result nothing has used yet.
     test: Option<TextRange>,
     parentheses: Vec<Parenthesis>,
+    /// What stands inside the outermost parenthesis and must not. Reported when it is closed: in one that is not, only
+    /// the missing `)` is wrong.
+    inside: Vec<Oddity>,
     stack: Vec<(ExprId, TextRange)>,
+    /// Jumps that leave values on the stack, with the number of them that were there. Of values that stay there to the
+    /// end of the sentence, only that is reported.
+    mismatches: Vec<(usize, Oddity)>,
     block: Option<Block>,
-    deepest: u32,
+    /// Part of the sentence was not understood, or its author left it out: what is missing may be there.
+    forgotten: bool,
 }
 
 impl Lowering {
     fn sentence(&mut self, sentence: &ast::Sentence) {
         self.pl7.b.next_network();
         self.result = None;
+        self.forgotten = false;
         for label in sentence.labels() {
             self.pl7.label(&label);
         }
-        for child in sentence.syntax().children() {
-            if let Some(instr) = ast::IlInstr::cast(child.clone()) {
-                self.instruction(&instr);
-            } else if let Some(label) = ast::LabelDef::cast(child)
-                && let Some(open) = self.parentheses.first().map(|it| it.range)
-            {
-                let range = label.syntax().text_range();
-                let text = label.token().map(|it| SmolStr::new(it.text())).unwrap_or_default();
-                let oddity = self.pl7.b.oddity(OddityKind::LabelInParentheses, range, text);
-                oddity.related.push((open, "opened here"));
+        for child in sentence.syntax().children_with_tokens() {
+            match child {
+                SyntaxElement::Token(it) if it.kind() == SyntaxKind::Elision => self.forget(),
+                SyntaxElement::Token(_) => {}
+                SyntaxElement::Node(it) if it.kind() == SyntaxKind::Error => self.forget(),
+                SyntaxElement::Node(it) => {
+                    if let Some(instr) = ast::IlInstr::cast(it.clone()) {
+                        self.instruction(&instr);
+                    } else if let Some(label) = ast::LabelDef::cast(it) {
+                        let text = label.token().map(|it| SmolStr::new(it.text())).unwrap_or_default();
+                        self.in_parentheses(OddityKind::LabelInParentheses, label.syntax().text_range(), &text);
+                    }
+                }
             }
         }
         self.end_of_sentence();
     }
 
+    /// Something unread stands here: it may use the result, make another, close what is open.
+    fn forget(&mut self) {
+        self.forgotten = true;
+        self.test = None;
+        self.result = Some(self.pl7.b.exprs().opaque());
+        self.parentheses.clear();
+        self.inside.clear();
+        self.stack.clear();
+        self.mismatches.clear();
+    }
+
     fn end_of_sentence(&mut self) {
-        for it in std::mem::take(&mut self.parentheses) {
-            self.pl7.b.oddity(OddityKind::UnclosedParenthesis, it.range, "(");
+        let unclosed = std::mem::take(&mut self.parentheses);
+        let inside = std::mem::take(&mut self.inside);
+        for it in &unclosed {
+            let oddity = self.pl7.b.oddity(OddityKind::UnclosedParenthesis, it.range, "(");
+            if let Some(action) = inside.iter().find(|inner| inner.range.start() >= it.range.end()) {
+                oddity.related.push((action.range, "this must not stand inside"));
+            }
+        }
+        let left = self.stack.len();
+        for (_, mismatch) in std::mem::take(&mut self.mismatches).into_iter().filter(|it| it.0 > left) {
+            self.pl7.b.model.oddities.push(mismatch);
         }
         if let Some(&(_, range)) = self.stack.last() {
-            let left = index(self.stack.len());
-            self.pl7.b.oddity(OddityKind::StackLeft(left), range, "MPS");
+            self.pl7.b.oddity(OddityKind::StackLeft(index(left)), range, "MPS");
             self.stack.clear();
         }
         // The tests of a block's inputs may stand in several sentences.
         self.unused_test();
-        self.deepest = 0;
     }
 
     fn unused_test(&mut self) {
@@ -111,6 +143,25 @@ impl Lowering {
             && self.pl7.b.is_reachable()
         {
             self.pl7.b.oddity(OddityKind::TestWithoutAction, range, "");
+        }
+    }
+
+    /// An unconditional instruction ignores the test before it.
+    fn ignored_test(&mut self, by: TextRange) {
+        let reported = self.pl7.b.model.oddities.len();
+        self.unused_test();
+        if let Some(oddity) = self.pl7.b.model.oddities.get_mut(reported) {
+            oddity.related.push((by, "this does not depend on it"));
+        }
+    }
+
+    /// Reports an instruction that uses a result which the sentence has not made (PL7:3319).
+    fn needs_result(&mut self, range: TextRange, text: &str) {
+        if self.result.is_none() && self.parentheses.is_empty() {
+            if self.pl7.b.is_reachable() {
+                self.pl7.b.oddity(OddityKind::SentenceStart, range, text);
+            }
+            self.result = Some(self.pl7.b.exprs().opaque());
         }
     }
 
@@ -132,17 +183,19 @@ impl Lowering {
             return;
         };
         let text = instr.mnemonic().map(|it| SmolStr::new(it.text())).unwrap_or_default();
-        if self.result.is_none() && self.parentheses.is_empty() && !op.info().starts_sequence() && self.block.is_none()
-        {
-            self.pl7.b.oddity(OddityKind::SentenceStart, range, text.clone());
-            self.result = Some(self.pl7.b.exprs().opaque());
+        if !op.info().starts_sequence() && op != IlOp::OutBlk {
+            self.needs_result(range, &text);
         }
         match op {
+            // The grammar has reported it; it is closed all the same.
+            IlOp::Ld | IlOp::LdN | IlOp::LdR | IlOp::LdF if instr.open_parenthesis().is_some() => {
+                self.combine(op, instr, range);
+            }
             IlOp::Ld | IlOp::LdN | IlOp::LdR | IlOp::LdF => {
                 if self.parentheses.is_empty() {
                     self.unused_test();
                 }
-                let value = self.test_operand(op, instr, range);
+                let value = self.test_operand(op, instr);
                 self.result = Some(value);
                 self.test = Some(range);
             }
@@ -176,9 +229,11 @@ impl Lowering {
                 if self.block.take().is_none() {
                     self.structure(range, &text, "`END_BLK` stands without `BLK`");
                 }
-                self.result = None;
             }
-            IlOp::Jmp => self.jump(Exprs::TRUE, instr, range, &text),
+            IlOp::Jmp => {
+                self.ignored_test(range);
+                self.jump(Exprs::TRUE, instr, range, &text);
+            }
             IlOp::JmpC | IlOp::JmpCN => {
                 let when = self.used(op == IlOp::JmpCN);
                 self.jump(when, instr, range, &text);
@@ -191,12 +246,18 @@ impl Lowering {
                 self.test = None;
                 self.result = Some(self.pl7.b.exprs().opaque());
             }
-            IlOp::Ret => self.leave(Exprs::TRUE, Leave::Subroutine, range),
+            IlOp::Ret => {
+                self.ignored_test(range);
+                self.leave(Exprs::TRUE, Leave::Subroutine, range);
+            }
             IlOp::RetC | IlOp::RetCN => {
                 let when = self.used(op == IlOp::RetCN);
                 self.leave(when, Leave::Subroutine, range);
             }
-            IlOp::End => self.leave(Exprs::TRUE, Leave::Unit, range),
+            IlOp::End => {
+                self.ignored_test(range);
+                self.leave(Exprs::TRUE, Leave::Unit, range);
+            }
             IlOp::EndC | IlOp::EndCN => {
                 let when = self.used(op == IlOp::EndCN);
                 self.leave(when, Leave::Unit, range);
@@ -229,9 +290,13 @@ impl Lowering {
 
     fn in_parentheses(&mut self, kind: OddityKind, range: TextRange, text: &str) {
         if let Some(open) = self.parentheses.first().map(|it| it.range) {
-            let oddity = self.pl7.b.oddity(kind, range, text);
-            oddity.related.push((open, "opened here"));
+            let related = vec![(open, "opened here")];
+            self.inside.push(Oddity { kind, range, text: text.into(), related });
         }
+    }
+
+    fn operand_type(&mut self, message: String, at: TextRange, text: impl Into<SmolStr>) {
+        self.pl7.b.oddity(OddityKind::OperandType(message), at, text);
     }
 
     fn structure(&mut self, range: TextRange, text: &str, message: &str) {
@@ -240,7 +305,7 @@ impl Lowering {
 
     // Tests.
 
-    fn test_operand(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange) -> ExprId {
+    fn test_operand(&mut self, op: IlOp, instr: &ast::IlInstr) -> ExprId {
         let edge = match op {
             IlOp::LdR | IlOp::AndR | IlOp::OrR | IlOp::XorR => Some(true),
             IlOp::LdF | IlOp::AndF | IlOp::OrF | IlOp::XorF => Some(false),
@@ -255,15 +320,12 @@ impl Lowering {
         let value = match instr.operand() {
             Some(IlOperand::Object(it)) => {
                 let (object, at) = self.pl7.object_ref(&it);
-                self.test_object(object, edge, at, range, op)
+                self.test_object(object, edge, at, op)
             }
-            Some(IlOperand::Name(it)) => match self.block_output(&it) {
-                Some((object, at)) => self.test_object(object, edge, at, range, op),
-                None => {
-                    let (object, at) = self.pl7.name_ref(&it);
-                    self.test_object(object, edge, at, range, op)
-                }
-            },
+            Some(IlOperand::Name(it)) => {
+                let (object, at) = self.block_output(&it).unwrap_or_else(|| self.pl7.name_ref(&it));
+                self.test_object(object, edge, at, op)
+            }
             Some(IlOperand::Literal(it)) => match self.pl7.literal(&it) {
                 (value, Kind::Bit) => value,
                 // `LD 1` is the immediate bit (PL7:577).
@@ -272,14 +334,25 @@ impl Lowering {
                     crate::model::expr::Expr::Int(1) => Exprs::TRUE,
                     _ => {
                         let at = it.syntax().text_range();
-                        let message = format!("`{}` takes a bit or a comparison in brackets", op.info().mnemonic);
-                        self.pl7.b.oddity(OddityKind::OperandType(message), at, it.syntax().text().to_string());
+                        let text = it.syntax().text().to_string();
+                        let message =
+                            format!("`{}` takes a bit or a comparison, and `{text}` is neither", op.info().mnemonic);
+                        self.operand_type(message, at, text);
                         self.pl7.b.exprs().opaque()
                     }
                 },
             },
             Some(IlOperand::Bracket(it)) => match it.expr() {
-                Some(expr) => self.pl7.expr(&expr).0,
+                Some(expr) => match self.pl7.expr(&expr) {
+                    (_, Kind::Number) if !is_elided(&expr) => {
+                        let at = it.syntax().text_range();
+                        let message =
+                            format!("`{}` takes a comparison in its brackets, not a number", op.info().mnemonic);
+                        self.operand_type(message, at, it.syntax().text().to_string());
+                        self.pl7.b.exprs().opaque()
+                    }
+                    (value, _) => value,
+                },
                 None => self.pl7.b.exprs().opaque(),
             },
             Some(IlOperand::Label(_)) | None => self.pl7.b.exprs().opaque(),
@@ -287,35 +360,46 @@ impl Lowering {
         if negated { self.pl7.b.exprs().not(value) } else { value }
     }
 
-    fn test_object(
-        &mut self,
-        object: ObjectId,
-        edge: Option<bool>,
-        at: TextRange,
-        range: TextRange,
-        op: IlOp,
-    ) -> ExprId {
+    fn test_object(&mut self, object: ObjectId, edge: Option<bool>, at: TextRange, op: IlOp) -> ExprId {
         if self.pl7.kind(object) == Kind::Number {
-            let data = self.pl7.b.model.object(object);
-            let message = format!("`{}` takes a bit, and `{}` is {}", op.info().mnemonic, data.text, describe(data.ty));
-            let text = data.text.clone();
-            self.pl7.b.oddity(OddityKind::OperandType(message), at, text);
+            self.takes_a_bit(object, at, op);
             return self.pl7.b.exprs().opaque();
         }
-        let _ = range;
         match edge {
             Some(rising) => self.pl7.b.edge(object, rising, at),
             None => self.pl7.read(object, at),
         }
     }
 
+    fn takes_a_bit(&mut self, object: ObjectId, at: TextRange, op: IlOp) {
+        let data = self.pl7.b.model.object(object);
+        let message = format!("`{}` takes a bit, and `{}` is {}", op.info().mnemonic, data.text, describe(data.ty));
+        let text = data.text.clone();
+        self.operand_type(message, at, text);
+    }
+
     /// In the output part of a block, `LD D` reads the block's own output.
     fn block_output(&mut self, it: &ast::NameRef) -> Option<(ObjectId, TextRange)> {
         let block = self.block.as_ref().filter(|it| it.outputs)?;
+        let id = block.object?;
         let name = it.name()?;
+        let at = name.text_range();
+        let is_output = OUTPUTS.iter().any(|output| name.text().eq_ignore_ascii_case(output));
+        if !is_output || it.path().len() != name.text().len() {
+            return None;
+        }
         let address = format!("{}.{}", block.text, name.text());
-        let object = object::pl7::parse(&address).ok()?;
-        Some((self.pl7.b.object(object), name.text_range()))
+        let object = match object::pl7::parse(&address) {
+            Ok(object) => object,
+            Err(_) if self.pl7.b.model.object(id).class == Class::Block => {
+                let message = format!("`{}` has no output `{}`", block.text, name.text());
+                self.structure(at, name.text(), &message);
+                Object::symbol(name.text())
+            }
+            // The block is named by a symbol.
+            Err(_) => Object::symbol(&address),
+        };
+        Some((self.pl7.b.object(object), at))
     }
 
     fn combine(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange) {
@@ -323,13 +407,12 @@ impl Lowering {
             let before = self.result;
             self.parentheses.push(Parenthesis { op, before, range });
             let depth = index(self.parentheses.len());
-            if depth > target::pl7::PARENTHESIS_DEPTH.value && depth > self.deepest {
-                self.pl7.b.oddity(OddityKind::ParenthesisDepth(depth), range, "(");
+            if depth > target::pl7::PARENTHESIS_DEPTH.value {
+                self.in_parentheses(OddityKind::ParenthesisDepth(depth), range, "(");
             }
-            self.deepest = self.deepest.max(depth);
-            self.result = instr.operand().map(|_| self.test_operand(op, instr, range));
+            self.result = instr.operand().map(|_| self.test_operand(op, instr));
         } else {
-            let value = self.test_operand(op, instr, range);
+            let value = self.test_operand(op, instr);
             let before = self.result();
             self.result = Some(self.apply(op, before, value));
         }
@@ -347,20 +430,28 @@ impl Lowering {
 
     fn close(&mut self, range: TextRange) {
         let Some(open) = self.parentheses.pop() else {
-            self.pl7.b.oddity(OddityKind::UnopenedParenthesis, range, ")");
+            if !self.forgotten {
+                self.pl7.b.oddity(OddityKind::UnopenedParenthesis, range, ")");
+            }
             return;
         };
+        if self.parentheses.is_empty() {
+            self.pl7.b.model.oddities.append(&mut self.inside);
+        }
         let inner = self.result();
-        let before = open.before.unwrap_or_else(|| self.pl7.b.exprs().opaque());
         // The modifier behind the parenthesis belongs to the first operand, not to the whole.
-        self.result = Some(self.apply(open.op, before, inner));
+        self.result = Some(match (open.op, open.before) {
+            (IlOp::Ld | IlOp::LdN | IlOp::LdR | IlOp::LdF, _) => inner,
+            (op, Some(before)) => self.apply(op, before, inner),
+            (_, None) => self.pl7.b.exprs().opaque(),
+        });
         self.test = Some(self.test.map_or(range, |it| it.cover(range)));
     }
 
     fn stack_instruction(&mut self, op: IlOp, range: TextRange, text: &str) {
-        if let Some(open) = self.parentheses.first().map(|it| it.range) {
-            let oddity = self.pl7.b.oddity(OddityKind::StackInParentheses, range, text);
-            oddity.related.push((open, "opened here"));
+        match self.inside.iter_mut().find(|it| it.kind == OddityKind::StackInParentheses) {
+            Some(first) => first.related.push((range, "and here")),
+            None => self.in_parentheses(OddityKind::StackInParentheses, range, text),
         }
         if op == IlOp::Mps {
             let result = self.result();
@@ -377,7 +468,9 @@ impl Lowering {
         self.result = Some(match top {
             Some((value, _)) => value,
             None => {
-                self.pl7.b.oddity(OddityKind::StackUnderflow, range, text);
+                if !self.forgotten {
+                    self.pl7.b.oddity(OddityKind::StackUnderflow, range, text);
+                }
                 self.pl7.b.exprs().opaque()
             }
         });
@@ -392,9 +485,11 @@ impl Lowering {
             Some(IlOperand::Name(it)) => Some(self.pl7.name_ref(&it)),
             Some(IlOperand::Literal(it)) => {
                 let at = it.syntax().text_range();
-                let message = format!("`{}` takes a bit that the program may write", op.info().mnemonic);
-                self.pl7.b.oddity(OddityKind::OperandType(message), at, it.syntax().text().to_string());
-                None
+                let text = it.syntax().text().to_string();
+                let message = format!("`{}` writes a bit, and `{text}` is a constant", op.info().mnemonic);
+                self.operand_type(message, at, text);
+                let _ = self.used(false);
+                return;
             }
             Some(IlOperand::Bracket(_) | IlOperand::Label(_)) | None => None,
         };
@@ -420,10 +515,8 @@ impl Lowering {
             self.pl7.b.drive(object, pin, when, None, at, range);
             return;
         }
-        if self.pl7.kind(object) == Kind::Number || data.ty == Type::Block {
-            let message = format!("`{}` takes a bit, and `{}` is {}", op.info().mnemonic, data.text, describe(data.ty));
-            let text = data.text.clone();
-            self.pl7.b.oddity(OddityKind::OperandType(message), at, text);
+        if self.pl7.kind(object) == Kind::Number {
+            self.takes_a_bit(object, at, op);
             return;
         }
         if let Some(block) = self.block.as_ref().filter(|it| !it.outputs) {
@@ -460,6 +553,9 @@ impl Lowering {
         let when = self.used(false);
         match place {
             Some((object, at)) => {
+                if !self.is_block(object, op, at) {
+                    return;
+                }
                 self.check_pin(object, op, range, text);
                 self.pl7.b.drive(object, pin, when, None, at, range);
             }
@@ -474,11 +570,25 @@ impl Lowering {
             self.structure(range, text, &message);
             return;
         }
-        let object = block.object;
+        let Some(object) = block.object else { return };
         let starts = block.text.to_ascii_uppercase().starts_with("%MN");
         let pin = if pin == Pin::Preset && starts { Pin::Start } else { pin };
         self.check_pin(object, op, range, text);
         self.pl7.b.drive(object, pin, when, None, range, range);
+    }
+
+    /// Whether an operand is a function block, as far as it shows; reports one that is not.
+    fn is_block(&mut self, object: ObjectId, op: IlOp, at: TextRange) -> bool {
+        let data = self.pl7.b.model.object(object);
+        match data.class {
+            Class::Block | Class::Symbol => return true,
+            Class::Indirect => return false,
+            _ => {}
+        }
+        let text = data.text.clone();
+        let message = format!("`{}` takes a function block, and `{text}` is {}", op.info().mnemonic, describe(data.ty));
+        self.operand_type(message, at, text);
+        false
     }
 
     /// Reports an input that the block does not have.
@@ -492,30 +602,32 @@ impl Lowering {
     }
 
     fn open_block(&mut self, instr: &ast::IlInstr, range: TextRange) {
-        self.close_block();
-        if let Some(IlOperand::Object(it)) = instr.operand() {
-            let (object, at) = self.pl7.object_ref(&it);
-            let text = self.pl7.b.model.object(object).text.clone();
-            if self.pl7.b.model.object(object).class == Class::Block {
-                self.pl7.b.touch(object, Mode::Drive(Pin::Whole), at);
-            }
-            self.block = Some(Block { object, text, range, outputs: false });
+        self.close_block(Some(range));
+        let place = match instr.operand() {
+            Some(IlOperand::Object(it)) => Some(self.pl7.object_ref(&it)),
+            Some(IlOperand::Name(it)) => Some(self.pl7.name_ref(&it)),
+            _ => None,
+        };
+        let place = place.filter(|&(object, at)| self.is_block(object, IlOp::Blk, at));
+        let text = place.map_or_else(SmolStr::default, |it| self.pl7.b.model.object(it.0).text.clone());
+        if let Some((object, at)) = place {
+            self.pl7.b.touch(object, Mode::Drive(Pin::Whole), at);
         }
+        self.block = Some(Block { object: place.map(|it| it.0), text, range, outputs: false });
     }
 
     /// A block that is still open where another starts, or where the unit ends.
-    fn close_block(&mut self) {
+    fn close_block(&mut self, next: Option<TextRange>) {
         if let Some(block) = self.block.take() {
-            let message = format!("the block of `{}` is not closed by `END_BLK`", block.text);
-            self.structure(block.range, "BLK", &message);
+            let message = "`BLK` is not closed by `END_BLK`".to_owned();
+            let oddity = self.pl7.b.oddity(OddityKind::BlockStructure(message), block.range, "BLK");
+            oddity.related.extend(next.map(|it| (it, "another block starts here")));
         }
     }
 
     /// `[%MW10:=%MW0+100]`: done when the result is 1.
     fn operation(&mut self, instr: &ast::IlInstr, range: TextRange) {
-        if self.result.is_none() && self.parentheses.is_empty() {
-            self.pl7.b.oddity(OddityKind::SentenceStart, range, "[");
-        }
+        self.needs_result(range, "[");
         self.in_parentheses(OddityKind::StoreInParentheses, range, "[");
         let when = self.used(false);
         let before = self.pl7.b.path();
@@ -535,8 +647,9 @@ impl Lowering {
     fn jump(&mut self, when: ExprId, instr: &ast::IlInstr, range: TextRange, text: &str) {
         self.in_parentheses(OddityKind::JumpInParentheses, range, text);
         if let Some(&(_, pushed)) = self.stack.last() {
-            let oddity = self.pl7.b.oddity(OddityKind::StackMismatch, range, text);
-            oddity.related.push((pushed, "pushed here"));
+            let related = vec![(pushed, "pushed here")];
+            let oddity = Oddity { kind: OddityKind::StackMismatch, range, text: text.into(), related };
+            self.mismatches.push((self.stack.len(), oddity));
         }
         match instr.operand() {
             Some(IlOperand::Label(it)) => self.pl7.jump(it.text(), it.text_range(), when, range),
@@ -572,6 +685,14 @@ fn inputs_of(address: &str) -> Option<&'static [IlOp]> {
         "DR" => &[IlOp::R, IlOp::U],
         _ => return None,
     })
+}
+
+/// Outputs of the blocks of PL7:977-999, by the letters of their bits.
+const OUTPUTS: &[&str] = &["Q", "R", "D", "E", "F"];
+
+/// Whether dots stand in place of an operand (PL7:3124).
+fn is_elided(expr: &ast::Expr) -> bool {
+    expr.syntax().descendants_with_tokens().any(|it| it.kind() == SyntaxKind::Elision)
 }
 
 fn describe(ty: Type) -> &'static str {

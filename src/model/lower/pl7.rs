@@ -9,7 +9,7 @@ use crate::model::entity::Entity;
 use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
-use crate::model::unit::{Argument, Call, Callee, Constant, DeadCause, Leave, Mode, OddityKind, StatementKind};
+use crate::model::unit::{Argument, Call, Callee, Constant, DeadCause, Leave, Mode, OddityKind, Pin, StatementKind};
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
 use crate::syntax::{Language, SyntaxNode};
 
@@ -94,7 +94,10 @@ impl Pl7 {
             return (self.address_error(error, range, &path), range);
         }
         let mut object = Object::symbol(&path);
-        object.indexed = indexed.is_some();
+        if indexed.is_some() {
+            object.indexed = true;
+            object.text = it.syntax().text().to_string().split_whitespace().collect::<String>().into();
+        }
         if let Some(suffix) = it.suffix() {
             object.extracted = suffix.to_ascii_uppercase().starts_with(":X");
             if object.extracted {
@@ -279,18 +282,23 @@ impl Pl7 {
         position: usize,
     ) -> (Option<ObjectId>, ExprId) {
         use crate::syntax::pl7::functions::Access;
-        let access = match function {
-            Some(function) => function.parameters.get(position).map_or(Access::Read, |it| it.access),
-            // An instance of a DFB: what it does with an actual is its type's affair.
-            None => Access::ReadWrite,
-        };
+        let known = function.and_then(|it| it.parameters.get(position)).map(|it| it.access);
+        // An instance of a DFB, or an argument that our volume of the manual does not describe: what becomes of it is
+        // not known here.
+        let is_open = function.is_none_or(|it| it.is_open);
+        let access = known.unwrap_or(if is_open { Access::ReadWrite } else { Access::Read });
         if access != Access::Read
             && let Some((object, range)) = self.place(argument)
         {
-            let mode = if access == Access::Write { Mode::Output } else { Mode::InOut };
-            if self.b.model.object(object).class != Class::Indirect {
-                self.b.touch(object, mode, range);
+            let data = self.b.model.object(object);
+            let (class, rights) = (data.class, data.rights);
+            if class == Class::Indirect {
+                return (Some(object), self.b.exprs().opaque());
             }
+            if known.is_none() && matches!(rights, Rights::ReadOnly(_)) {
+                return (Some(object), self.b.read(object, range));
+            }
+            self.b.touch(object, if access == Access::Write { Mode::Output } else { Mode::InOut }, range);
             return (Some(object), self.b.exprs().opaque());
         }
         let (value, _) = self.expr(argument);
@@ -347,7 +355,10 @@ impl Pl7 {
             if self.b.model.object(object).class == Class::Indirect {
                 return;
             }
+            let is_block = self.b.model.object(object).class == Class::Block;
             match name.as_str() {
+                // PL7:3571: a block can be reset too.
+                "RESET" if is_block => self.b.drive(object, Pin::Reset, Exprs::TRUE, None, at, range),
                 "SET" => self.b.set(object, Exprs::TRUE, at, range),
                 "RESET" => self.b.reset(object, Exprs::TRUE, at, range),
                 "INC" | "DEC" => {
@@ -388,11 +399,14 @@ impl Pl7 {
             full: true,
         };
         self.b.call(call, range);
+        // An instance has run: its outputs and public variables, which are names here, may have other values.
+        if function.is_none() {
+            self.b.wipe();
+        }
     }
 
     /// `START %TM1;`, `DOWN %TM1;`, `PRESET %C8;`, `UP %C8;`: a statement that drives a block.
     fn block_statement(&mut self, name: &str, object: ObjectId, at: TextRange, range: TextRange) {
-        use crate::model::unit::Pin;
         let pin = match name {
             "START" => Pin::Start,
             "PRESET" => Pin::Preset,

@@ -8,6 +8,7 @@ use super::pl7::{self, Pl7};
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs};
+use crate::model::object::Rights;
 use crate::model::unit::{DeadCause, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
 use crate::syntax::{Language, SyntaxNode};
@@ -171,8 +172,11 @@ impl Lowering {
         }
         let place = it.index().and_then(|it| self.pl7.place(&it));
         if let Some((object, at)) = place {
-            let value = start.map_or_else(|| self.pl7.b.exprs().opaque(), |it| it.0);
-            self.pl7.assign(object, value, pl7::Kind::Number, at, at);
+            // Of an index that no program may write, rule T002 speaks: there is no write besides.
+            if !matches!(self.pl7.b.model.object(object).rights, Rights::ReadOnly(_)) {
+                let value = start.map_or_else(|| self.pl7.b.exprs().opaque(), |it| it.0);
+                self.pl7.assign(object, value, pl7::Kind::Number, at, at);
+            }
             self.pl7.read(object, at);
         }
         let id = self.open_loop(LoopKind::For, keyword(it.syntax()));

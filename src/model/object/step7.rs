@@ -632,9 +632,18 @@ mod tests {
 
     #[test]
     fn out_of_range() {
-        for operand in
-            ["M0.8", "M5.9", "M65536.0", "MW65535", "MD 65533", "T 65536", "Z99999999999", "DB 65536", "DB65536.DBW0", "DBW65535"]
-        {
+        for operand in [
+            "M0.8",
+            "M5.9",
+            "M65536.0",
+            "MW65535",
+            "MD 65533",
+            "T 65536",
+            "Z99999999999",
+            "DB 65536",
+            "DB65536.DBW0",
+            "DBW65535",
+        ] {
             let error = parse(operand, German).expect_err(operand);
             assert_eq!((error.kind, error.suggestion), (AddressErrorKind::OutOfRange, None), "{operand}");
         }

@@ -1,0 +1,27 @@
+//! J003: a label that the language does not have.
+
+use rowan::TextRange;
+
+use crate::lint::{Sink, UnitCx};
+
+pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    for label in &cx.model.labels {
+        let text = &label.text;
+        if let Some(range) = cx.target.label_numbers() {
+            // A number too long for its type is out of any range.
+            let number = label.name.parse::<u32>().unwrap_or(u32::MAX);
+            if !range.contains(number) {
+                let message = format!("label `{text}` is out of range: %L{} to %L{}", range.first, range.last);
+                sink.report(label.range, message).note(format!("the range is given in {}", range.source));
+            }
+        }
+        if let Some(length) = cx.target.label_length() {
+            if text.chars().count() > length.value as usize {
+                let message = format!("label `{text}` has more than {} characters", length.value);
+                sink.report(label.range, message).note(format!("the length is given in {}", length.source));
+            } else if !text.starts_with(|it: char| it.is_alphabetic() || it == '_') {
+                sink.report(label.range, format!("label `{text}` starts with neither a letter nor `_`"));
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! T009: operators whose order is easily misread.
+
+use rowan::TextRange;
+use rowan::ast::AstNode as _;
+
+use crate::lint::{Applicability, Edit, Sink, UnitCx};
+use crate::syntax::SyntaxKind;
+use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, UnaryOp};
+
+pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    for node in cx.nodes(SyntaxKind::BinExpr) {
+        let Some(expr) = BinExpr::cast(node.clone()) else { continue };
+        let (Some(op), Some(operator)) = (expr.op(), expr.operator()) else { continue };
+        if !op.is_logical() {
+            negated_operand(cx, sink, &expr, op);
+            continue;
+        }
+        let groups: Vec<BinExpr> = operands(&expr).into_iter().filter(|it| is_doubtful(cx, &expr, op, it)).collect();
+        let Some(first) = groups.first().and_then(|it| Some((it.operator()?, it.syntax().text_range()))) else { continue };
+        let places = groups.iter().map(|it| it.syntax().text_range());
+        let edits: Vec<Edit<TextRange>> = places.clone().flat_map(parentheses).collect();
+        let message = format!(
+            "`{}` and `{}` are mixed without parentheses",
+            first.0.text().to_ascii_uppercase(),
+            operator.text().to_ascii_uppercase()
+        );
+        sink.report(expr.syntax().text_range(), message)
+            .related_all(places.map(|it| (it, "this is done first".to_owned())))
+            .note(format!("it is read as `{}`", grouped(cx, expr.syntax().text_range(), &edits)))
+            .fix("Write the parentheses that apply", Applicability::Safe, edits);
+    }
+}
+
+/// `NOT a = b`, `NOT a + b`: the `NOT` belongs to `a` alone.
+fn negated_operand(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, expr: &BinExpr, op: BinOp) {
+    let Some(Expr::Unary(negation)) = expr.lhs() else { return };
+    if negation.op() != Some(UnaryOp::Not) || op == BinOp::Assign {
+        return;
+    }
+    let Some(operator) = expr.operator() else { return };
+    let place = negation.syntax().text_range();
+    let edits: Vec<Edit<TextRange>> = parentheses(place).into();
+    sink.report(expr.syntax().text_range(), format!("`NOT` is done before `{}`", operator.text()))
+        .related(place, "this is done first")
+        .note(format!("it is read as `{}`", grouped(cx, expr.syntax().text_range(), &edits)))
+        .fix("Write the parentheses that apply", Applicability::Safe, edits);
+}
+
+fn operands(expr: &BinExpr) -> Vec<BinExpr> {
+    [expr.lhs(), expr.rhs()]
+        .into_iter()
+        .filter_map(|it| if let Some(Expr::Bin(it)) = it { Some(it) } else { None })
+        .collect()
+}
+
+/// Whether an operand of a logical operator should stand in parentheses: it has another logical operator, or is a
+/// comparison while the other operand is a number.
+fn is_doubtful(cx: &UnitCx<'_>, whole: &BinExpr, op: BinOp, operand: &BinExpr) -> bool {
+    let Some(inner) = operand.op() else { return false };
+    if inner.is_logical() {
+        return inner != op;
+    }
+    let others = [whole.lhs(), whole.rhs()];
+    inner.is_comparison() && others.into_iter().flatten().any(|it| cx.kinds().of(&it).is_integer())
+}
+
+fn parentheses(place: TextRange) -> [Edit<TextRange>; 2] {
+    [
+        Edit { place: TextRange::empty(place.start()), replacement: "(".to_owned() },
+        Edit { place: TextRange::empty(place.end()), replacement: ")".to_owned() },
+    ]
+}
+
+/// The text of an expression with the edits done, in one line.
+fn grouped(cx: &UnitCx<'_>, place: TextRange, edits: &[Edit<TextRange>]) -> String {
+    let mut text = String::new();
+    let mut at = place.start();
+    for edit in edits {
+        text += cx.text_of(TextRange::new(at, edit.place.start().max(at)));
+        text += &edit.replacement;
+        at = edit.place.end().max(at);
+    }
+    text += cx.text_of(TextRange::new(at, place.end().max(at)));
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

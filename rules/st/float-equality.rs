@@ -1,0 +1,31 @@
+//! T012: floating-point numbers compared for equality.
+
+use rowan::TextRange;
+use rowan::ast::AstNode as _;
+
+use crate::lint::{Sink, UnitCx};
+use crate::model::pl7_kinds::Kind;
+use crate::syntax::SyntaxKind;
+use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, LiteralValue};
+
+pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
+        let (Some(BinOp::Eq | BinOp::Ne), Some(operator)) = (expr.op(), expr.operator()) else { continue };
+        let (Some(a), Some(b)) = (expr.lhs(), expr.rhs()) else { continue };
+        let kinds = [&a, &b].map(|it| cx.kinds().of(it));
+        // A whole number beside a floating-point number is T011's affair.
+        if !kinds.contains(&Kind::Float) || kinds.iter().any(|it| it.is_integer()) || is_zero(&a) || is_zero(&b) {
+            continue;
+        }
+        let text = operator.text();
+        sink.report(expr.syntax().text_range(), format!("`{text}` compares floating-point numbers for equality"));
+    }
+}
+
+fn is_zero(expr: &Expr) -> bool {
+    match expr {
+        Expr::Literal(it) => matches!(it.value(), Some(LiteralValue::Real(value)) if value == 0.0),
+        Expr::Paren(it) => it.expr().is_some_and(|it| is_zero(&it)),
+        _ => false,
+    }
+}

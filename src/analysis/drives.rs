@@ -1,0 +1,40 @@
+//! Which places drive an object, and which of them can take effect in one scan.
+
+use super::program::{GlobalUse, ObjectUses, ProgramIndex};
+use crate::model::object::{Class, Type};
+use crate::model::unit::Mode;
+
+/// Stores of words and tables that write an output bit on the way, or of bit tables that write a memory bit. Stores of
+/// constants clear or preset a whole area and are left out. `neighbours`: objects that share memory with the bit.
+pub fn covering<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours: &[u32]) -> Vec<GlobalUse<'a>> {
+    let mut found = Vec::new();
+    for whole in neighbours.iter().filter_map(|&it| program.objects.get(it as usize)) {
+        let wide = whole.object.class == Class::Output || matches!(whole.object.ty, Type::BitTable(_));
+        if wide && whole.object.ty != Type::Bool && whole.object.footprint.contains(&bit.object.footprint) {
+            found.extend(whole.with_mode(|it| it == Mode::Store).filter(|it| it.it.constant.is_none()).copied());
+        }
+    }
+    found
+}
+
+/// Sorts places as the controller comes across them.
+pub fn in_order(program: &ProgramIndex<'_>, uses: &mut [GlobalUse<'_>]) {
+    uses.sort_by_key(|it| (program.order[it.unit as usize], it.it.anchor));
+}
+
+/// The second place of the first two that can take effect in one scan, and all others. `uses` are in order; what only
+/// runs at start-up is overwritten on purpose.
+pub fn conflict<'a>(
+    program: &ProgramIndex<'_>,
+    uses: &[GlobalUse<'a>],
+    opposed: impl Fn(&GlobalUse<'_>, &GlobalUse<'_>) -> bool,
+) -> Option<(GlobalUse<'a>, Vec<GlobalUse<'a>>)> {
+    /// Of more driving places of one object, only so many are compared.
+    const MAX_COMPARED: usize = 256;
+    let uses: Vec<GlobalUse<'a>> = uses.iter().filter(|it| !program.is_startup(it.unit)).copied().collect();
+    let compared = &uses[..uses.len().min(MAX_COMPARED)];
+    let at = (1..compared.len())
+        .find(|&at| compared[..at].iter().any(|it| opposed(it, &compared[at]) && program.clash(it, &compared[at])))?;
+    let others = uses.iter().enumerate().filter(|it| it.0 != at).map(|it| *it.1).collect();
+    Some((uses[at], others))
+}
