@@ -174,7 +174,7 @@ pub struct Program<'db> {
 
 /// What of a file says which program it belongs to.
 #[salsa::tracked(returns(deref))]
-fn named_entities<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Entity]> {
+fn named_entities(db: &dyn Db, file: SourceFile) -> Box<[Entity]> {
     let entities = units(db, file).iter().map(|unit| unit.entity(db));
     entities.filter(|it| **it != Entity::Container).cloned().collect()
 }
@@ -327,7 +327,7 @@ fn target_of(settings: &Settings, family: Family) -> Target {
 
 /// All findings of a file, sorted by place and code; suppressed ones are marked.
 #[salsa::tracked(returns(deref))]
-pub fn file_findings<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[FileFinding]> {
+pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     let project = db.project();
     let settings = project.settings(db);
     let selection = settings.selection(file.path(db));

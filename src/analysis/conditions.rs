@@ -78,6 +78,9 @@ fn spread(exprs: &Exprs, condition: ExprId, out: &mut Vec<ExprId>) {
     }
 }
 
+/// An atom that compares a term: its number, the comparison, the constant if it is one, and whether that is whole.
+type Compared = (usize, Comparison, Option<f64>, bool);
+
 /// A truth table: one bit a row, `rows` of them.
 type Bits = Vec<u64>;
 
@@ -244,8 +247,7 @@ impl Table {
 
     /// For each term compared with constants or with one other term: the rows that some value of it explains.
     fn orders(&self, exprs: &Exprs) -> Vec<Bits> {
-        let mut terms: FxHashMap<(ExprId, Option<ExprId>), Vec<(usize, Comparison, Option<f64>, bool)>> =
-            FxHashMap::default();
+        let mut terms: FxHashMap<(ExprId, Option<ExprId>), Vec<Compared>> = FxHashMap::default();
         for (n, &id) in self.order.iter().enumerate() {
             let Expr::Compare(op, a, b) = *exprs.get(id) else { continue };
             match (number(exprs, a), number(exprs, b)) {

@@ -118,10 +118,10 @@ impl UnitFacts {
                 | StatementKind::Drive { access, when, .. } => {
                     whens.insert(access, when);
                 }
-                StatementKind::Call(call) => {
-                    if model.calls.get(call as usize).is_some_and(|it| it.when != Exprs::TRUE) {
-                        conditional_calls.insert(at);
-                    }
+                StatementKind::Call(call)
+                    if model.calls.get(call as usize).is_some_and(|it| it.when != Exprs::TRUE) =>
+                {
+                    conditional_calls.insert(at);
                 }
                 _ => {}
             }

@@ -190,7 +190,8 @@ fn join(a: Kind, b: Kind) -> Kind {
         return Kind::Bit;
     }
     let is_float = a.is_float() && b.is_float();
-    if !is_float && !(a.is_integer() && b.is_integer()) {
+    let is_integer = a.is_integer() && b.is_integer();
+    if !is_float && !is_integer {
         return Kind::Unknown;
     }
     match (a.is_table() || b.is_table(), is_float) {
