@@ -42,7 +42,7 @@ pub fn conflict<'a>(
     const MAX_COMPARED: usize = 256;
     let uses: Vec<GlobalUse<'a>> = uses
         .iter()
-        .filter(|it| !program.is_startup(it.unit) && !(it.it.own && it.mode != Mode::Set))
+        .filter(|it| !program.is_startup(it.unit) && (!it.it.own || it.mode == Mode::Set))
         .copied()
         .collect();
     let compared = &uses[..uses.len().min(MAX_COMPARED)];

@@ -396,10 +396,11 @@ fn order(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
 
 /// Whether the units hold the program's cyclic entry point.
 fn has_main(units: &[&UnitFacts]) -> bool {
-    units.iter().any(|it| match &it.entity {
-        Entity::Pl7 { part: Part::Main, .. } => true,
-        Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. } => true,
-        _ => false,
+    units.iter().any(|it| {
+        matches!(
+            &it.entity,
+            Entity::Pl7 { part: Part::Main, .. } | Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. }
+        )
     })
 }
 
