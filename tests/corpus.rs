@@ -124,7 +124,9 @@ fn clean_programs_have_no_finding() {
     let folders = folders();
     for name in CLEAN {
         let (_, files) = folders.iter().find(|it| it.0 == name).expect("a folder of the corpus");
-        assert_eq!(findings(&check(files, None)), "", "{name}");
+        for select in [None, Some("all")] {
+            assert_eq!(findings(&check(files, select)), "", "{name}");
+        }
     }
 }
 

@@ -8,27 +8,53 @@ use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, UnaryOp};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for node in cx.nodes(SyntaxKind::BinExpr) {
-        let Some(expr) = BinExpr::cast(node.clone()) else { continue };
-        let (Some(op), Some(operator)) = (expr.op(), expr.operator()) else { continue };
+    for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
+        let Some(op) = expr.op() else { continue };
         if !op.is_logical() {
             negated_operand(cx, sink, &expr, op);
             continue;
         }
-        let groups: Vec<BinExpr> = operands(&expr).into_iter().filter(|it| is_doubtful(cx, &expr, op, it)).collect();
-        let Some(first) = groups.first().and_then(|it| Some((it.operator()?, it.syntax().text_range()))) else { continue };
-        let places = groups.iter().map(|it| it.syntax().text_range());
-        let edits: Vec<Edit<TextRange>> = places.clone().flat_map(parentheses).collect();
-        let message = format!(
-            "`{}` and `{}` are mixed without parentheses",
-            first.0.text().to_ascii_uppercase(),
-            operator.text().to_ascii_uppercase()
-        );
-        sink.report(expr.syntax().text_range(), message)
-            .related_all(places.map(|it| (it, "this is done first".to_owned())))
-            .note(format!("it is read as `{}`", grouped(cx, expr.syntax().text_range(), &edits)))
-            .fix("Write the parentheses that apply", Applicability::Safe, edits);
+        let parent = expr.syntax().parent().and_then(BinExpr::cast).and_then(|it| it.op());
+        if parent.is_none_or(|it| !it.is_logical()) {
+            logical_chain(cx, sink, &expr);
+        }
     }
+}
+
+/// One finding for all that should stand in parentheses under one outermost logical operator.
+fn logical_chain(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, whole: &BinExpr) {
+    let mut places: Vec<TextRange> = Vec::new();
+    let mut words: Vec<String> = Vec::new();
+    let mut stack = vec![whole.clone()];
+    while let Some(expr) = stack.pop() {
+        let (Some(op), Some(operator)) = (expr.op(), expr.operator()) else { continue };
+        if !op.is_logical() {
+            continue;
+        }
+        for inner in operands(&expr) {
+            if is_doubtful(cx, &expr, op, &inner) {
+                places.push(inner.syntax().text_range());
+                for word in inner.operator().iter().chain([&operator]).map(|it| it.text().to_ascii_uppercase()) {
+                    if !words.contains(&word) {
+                        words.push(word);
+                    }
+                }
+            }
+            stack.push(inner);
+        }
+    }
+    if places.is_empty() {
+        return;
+    }
+    places.sort_by_key(|it| (it.start(), it.end()));
+    let mut edits: Vec<Edit<TextRange>> = places.iter().copied().flat_map(parentheses).collect();
+    edits.sort_by_key(|it| it.place.start());
+    let words: Vec<String> = words.iter().map(|it| format!("`{it}`")).collect();
+    let place = whole.syntax().text_range();
+    sink.report(place, format!("{} are mixed without parentheses", words.join(" and ")))
+        .related_all(places.into_iter().map(|it| (it, "this is done first".to_owned())))
+        .note(format!("it is read as `{}`", grouped(cx, place, &edits)))
+        .fix("Write the parentheses that apply", Applicability::Safe, edits);
 }
 
 /// `NOT a = b`, `NOT a + b`: the `NOT` belongs to `a` alone.

@@ -17,7 +17,10 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         exchange(sink, &operator, ":=", format!("`=` compares, and `{target}` is to be assigned"));
     }
     for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
+        // `Motor(START := %M0)` names a parameter: no condition, whatever else is wrong with it.
+        let parent = expr.syntax().parent().map(|it| it.kind());
         if expr.op() == Some(BinOp::Assign)
+            && !matches!(parent, Some(SyntaxKind::CallStmt | SyntaxKind::CallExpr))
             && let Some(operator) = expr.operator()
         {
             let target = expr.lhs().map_or("", |it| cx.text_of(it.syntax().text_range()));

@@ -5,35 +5,43 @@ use rowan::ast::AstNode as _;
 use rustc_hash::FxHashMap;
 
 use crate::lint::{Sink, UnitCx};
-use crate::syntax::pl7::ast::{Expr, IfStmt};
+use crate::syntax::pl7::ast::{Expr, IfStmt, Stmt};
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for statement in cx.nodes(SyntaxKind::IfStmt).iter().cloned().filter_map(IfStmt::cast) {
-        if statement.arms().nth(1).is_some() {
-            let mut seen: FxHashMap<Vec<String>, TextRange> = FxHashMap::default();
-            for condition in statement.arms().filter_map(|it| it.condition()).filter_map(bare) {
-                let place = condition.syntax().text_range();
-                if let Some(&first) = seen.get(&words(condition.syntax())) {
-                    sink.report(place, format!("the condition `{}` stands in an earlier arm", one_line(cx, place)))
-                        .label("never true here")
-                        .related(first, "first here");
-                } else {
-                    seen.insert(words(condition.syntax()), place);
-                }
-            }
+        if !repeats(cx, sink, &statement) {
+            makes_no_difference(cx, sink, &statement);
         }
-        let Some(last) = statement.arms().last() else { continue };
-        let Some((body, other)) = last.body().zip(statement.else_arm().and_then(|it| it.body())) else { continue };
-        if body.statements().next().is_some()
-            && is_like(body.syntax(), other.syntax())
-            && let Some(condition) = last.condition()
-        {
-            let place = condition.syntax().text_range();
-            sink.report(place, format!("the condition `{}` makes no difference", one_line(cx, place)))
-                .related(body.syntax().text_range(), "what is done when it is true")
-                .related(other.syntax().text_range(), "is done by `ELSE` too");
+    }
+}
+
+/// Reports conditions that an earlier arm has; whether the last arm's is one.
+fn repeats(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: &IfStmt) -> bool {
+    let mut seen: FxHashMap<Vec<String>, TextRange> = FxHashMap::default();
+    let mut is_repeated = false;
+    for condition in statement.arms().filter_map(|it| it.condition()).filter_map(bare) {
+        let place = condition.syntax().text_range();
+        let first = *seen.entry(tokens(condition.syntax()).collect()).or_insert(place);
+        is_repeated = first != place;
+        if is_repeated {
+            sink.report(place, format!("the condition `{}` stands in an earlier arm", one_line(cx, place)))
+                .label("never true here")
+                .related(first, "first here");
         }
+    }
+    is_repeated
+}
+
+fn makes_no_difference(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: &IfStmt) {
+    let Some(last) = statement.arms().last() else { return };
+    let Some((body, other)) = last.body().zip(statement.else_arm().and_then(|it| it.body())) else { return };
+    let Some(place) = last.condition().map(|it| it.syntax().text_range()) else { return };
+    let is_empty = body.statements().all(|it| matches!(it, Stmt::Empty(_)));
+    if !is_empty && tokens(body.syntax()).eq(tokens(other.syntax())) {
+        sink.report(place, format!("the condition `{}` makes no difference", one_line(cx, place)))
+            .related(body.syntax().text_range(), "what is done when it is true")
+            .related(other.syntax().text_range(), "is done by `ELSE` too");
     }
 }
 
@@ -52,14 +60,6 @@ fn tokens(node: &SyntaxNode) -> impl Iterator<Item = String> {
         SyntaxKind::CharString => it.text().to_owned(),
         _ => it.text().to_uppercase(),
     })
-}
-
-fn words(node: &SyntaxNode) -> Vec<String> {
-    tokens(node).collect()
-}
-
-fn is_like(a: &SyntaxNode, b: &SyntaxNode) -> bool {
-    tokens(a).eq(tokens(b))
 }
 
 fn one_line(cx: &UnitCx<'_>, place: TextRange) -> String {

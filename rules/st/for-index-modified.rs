@@ -4,13 +4,14 @@ use rowan::TextRange;
 use rustc_hash::FxHashMap;
 
 use crate::lint::{Sink, UnitCx};
-use crate::model::unit::LoopKind;
+use crate::model::unit::{LoopKind, Mode};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let model = cx.model;
     // Writes of the index, by loop. The nesting of loops is limited by the grammar.
     let mut writes: FxHashMap<u32, Vec<TextRange>> = FxHashMap::default();
-    for access in model.accesses.iter().filter(|it| it.mode.writes() && model.object(it.object).is_fixed()) {
+    let surely_writes = |mode: Mode| mode.writes() && mode != Mode::InOut;
+    for access in model.accesses.iter().filter(|it| surely_writes(it.mode) && model.object(it.object).is_fixed()) {
         let mut around = model.statement(access).and_then(|it| it.in_loop);
         while let Some((id, it)) = around.and_then(|id| Some((id, model.loops.get(id as usize)?))) {
             around = it.parent;

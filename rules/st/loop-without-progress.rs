@@ -51,7 +51,7 @@ fn is_known(exprs: &Exprs, condition: ExprId) -> bool {
         }
         match exprs.get(id) {
             Expr::Opaque(_) => return false,
-            Expr::Call(_, arguments) if arguments.is_empty() => return false,
+            Expr::Call(name, arguments) if arguments.is_empty() || functions::lookup(name).is_none() => return false,
             Expr::Call(_, arguments) => stack.extend(arguments.iter()),
             Expr::Not(a) | Expr::Negate(a) => stack.push(*a),
             Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) => stack.extend([*a, *b]),

@@ -29,6 +29,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
                     .related(open, "this comment is still open there")
                     .note("the first `*)` ends the outer comment");
             }
+            None if is_closed => {}
             _ => {
                 let related = inner.map(|it| (it, "another comment opens here".to_owned()));
                 sink.report(open, "the comment opened here is not closed").related_all(related);

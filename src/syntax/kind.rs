@@ -16,7 +16,7 @@ kinds! {
     // Trivia: never seen by a grammar, kept in the tree.
     /// Blanks and tabs.
     Whitespace,
-    /// One line break: LF, CRLF or CR.
+    /// One line break: LF, CRLF or CR. In AWL with the blanks that indent the next line.
     Newline,
     /// A comment of the language, delimiters included.
     Comment,

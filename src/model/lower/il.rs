@@ -565,12 +565,8 @@ impl Lowering {
 
     fn drive_open_block(&mut self, op: IlOp, pin: Pin, when: ExprId, range: TextRange, text: &str) {
         let Some(block) = &self.block else { return };
-        if block.outputs {
-            let message = format!("`{text}` drives an input of `{}` behind its `OUT_BLK`", block.text);
-            self.structure(range, text, &message);
-            return;
-        }
-        let Some(object) = block.object else { return };
+        // Behind `OUT_BLK` the operand is missing, and the grammar has said so.
+        let Some(object) = block.object.filter(|_| !block.outputs) else { return };
         let starts = block.text.to_ascii_uppercase().starts_with("%MN");
         let pin = if pin == Pin::Preset && starts { Pin::Start } else { pin };
         self.check_pin(object, op, range, text);
@@ -707,5 +703,257 @@ fn describe(ty: Type) -> &'static str {
         Type::Text(_) => "a character string",
         Type::Block => "a function block",
         Type::Unknown => "of another type",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::Task;
+    use crate::model::expr::Expr;
+    use crate::model::unit::StatementKind;
+
+    fn part(text: &str, part: Part) -> UnitModel {
+        let parse = crate::syntax::pl7::parse_il(text);
+        lower(&parse.syntax(), Entity::Pl7 { task: Task::Mast, section: None, part })
+    }
+
+    fn model(text: &str) -> UnitModel {
+        assert_eq!(crate::syntax::pl7::parse_il(text).errors(), [], "{text}");
+        part(text, Part::Main)
+    }
+
+    /// Oddities with the text of their places.
+    fn oddities(text: &str) -> Vec<String> {
+        let model = part(text, Part::Main);
+        let show = |it: &Oddity| format!("{:?} at {}", it.kind, &text[std::ops::Range::<usize>::from(it.range)]);
+        model.oddities.iter().map(show).collect()
+    }
+
+    /// What each statement does, with the path to it.
+    fn statements(text: &str) -> Vec<String> {
+        let model = model(text);
+        let name = |access: u32| model.object(model.accesses[access as usize].object).text.to_string();
+        let mut lines = Vec::new();
+        for it in &model.statements {
+            let what = match it.kind {
+                StatementKind::Assign { access, value } => format!("{} := {}", name(access), show(&model, value)),
+                StatementKind::Store { access, value } => format!("{} := {}", name(access), show(&model, value)),
+                StatementKind::Set { access, when } => format!("set {} when {}", name(access), show(&model, when)),
+                StatementKind::Reset { access, when } => format!("reset {} when {}", name(access), show(&model, when)),
+                StatementKind::Drive { access, pin, when, .. } => {
+                    format!("{} of {} when {}", pin.describe(), name(access), show(&model, when))
+                }
+                StatementKind::Jump(jump) => format!("jump when {}", show(&model, model.jumps[jump as usize].when)),
+                StatementKind::Call(call) => format!("call {}", model.calls[call as usize].text),
+                StatementKind::Return { when, .. } => format!("return when {}", show(&model, when)),
+                _ => continue,
+            };
+            let path = show(&model, it.path);
+            lines.push(if path == "true" { what } else { format!("{path}: {what}") });
+        }
+        lines
+    }
+
+    fn show(model: &UnitModel, id: ExprId) -> String {
+        match model.exprs.get(id) {
+            Expr::Bool(value) => value.to_string(),
+            Expr::Int(value) => value.to_string(),
+            Expr::Read { object, .. } => model.object(*object).text.to_string(),
+            Expr::Edge { object, rising, .. } => {
+                format!("{}{}", if *rising { "^" } else { "v" }, model.object(*object).text)
+            }
+            Expr::Not(a) => format!("!{}", show(model, *a)),
+            Expr::And(a, b) => format!("({} & {})", show(model, *a), show(model, *b)),
+            Expr::Or(a, b) => format!("({} | {})", show(model, *a), show(model, *b)),
+            Expr::Xor(a, b) => format!("({} ^ {})", show(model, *a), show(model, *b)),
+            Expr::Compare(op, a, b) => format!("({} {} {})", show(model, *a), op.as_str(), show(model, *b)),
+            Expr::Binary(op, a, b) => format!("{op:?}({}, {})", show(model, *a), show(model, *b)),
+            _ => "?".to_owned(),
+        }
+    }
+
+    #[test]
+    fn chains_are_read_from_left_to_right() {
+        // PL7:3327-3345.
+        assert_eq!(statements("LD %I1.1\nAND %M0\nOR %M10\nST %Q2.0"), ["%Q2.0 := ((%I1.1 & %M0) | %M10)"]);
+        assert_eq!(
+            statements("LD %I1.1\nAND %M0\nOR( %M10\nAND %I1.2\n)\nST %Q2.0"),
+            ["%Q2.0 := ((%I1.1 & %M0) | (%M10 & %I1.2))"]
+        );
+        assert_eq!(statements("LDN %M0\nXOR %M1\nN\nSTN %M2"), ["%M2 := (!%M0 ^ %M1)"]);
+        assert_eq!(
+            statements("LDR %M0\nORF %M1\nS %M2\nR %M3"),
+            ["set %M2 when (^%M0 | v%M1)", "reset %M3 when (^%M0 | v%M1)"]
+        );
+        assert_eq!(statements("LD TRUE\nST %M0\nLD 0\nST %M1"), ["%M0 := true", "%M1 := false"]);
+    }
+
+    #[test]
+    fn modifiers_belong_to_the_first_operand() {
+        // PL7:3199-3222.
+        assert_eq!(
+            statements("LD %I1.0\nAND ( %I1.1\nOR (N %I1.2\nAND %M3\n)\n)\nST %Q2.0"),
+            ["%Q2.0 := (%I1.0 & (%I1.1 | (!%I1.2 & %M3)))"]
+        );
+        let code = "LD %I1.1\nAND ( %I1.2\nAND %I1.3\nOR (N %I1.5\nAND %I1.6\n)\nAND %I1.4\nOR (N %I1.7\nAND %I1.8\n)\n)\nST %Q2.0";
+        assert_eq!(
+            statements(code),
+            ["%Q2.0 := (%I1.1 & ((((%I1.2 & %I1.3) | (!%I1.5 & %I1.6)) & %I1.4) | (!%I1.7 & %I1.8)))"]
+        );
+        assert_eq!(
+            statements("LD %M0\nOR ([%MW0>100]\nAND (R %M1\n)\n)\nST %M2"),
+            ["%M2 := (%M0 | ((%MW0 > 100) & ^%M1))"]
+        );
+    }
+
+    #[test]
+    fn the_stack_gives_back_what_was_pushed() {
+        // PL7:3251-3267.
+        let code = "LD %I1.0\nAND %M0\nMPS\nAND %I1.1\nST %Q2.0\nMRD\nAND %I1.2\nST %Q2.1\nMPP\nAND %I1.4\nST %Q2.3";
+        assert_eq!(
+            statements(code),
+            [
+                "%Q2.0 := ((%I1.0 & %M0) & %I1.1)",
+                "%Q2.1 := ((%I1.0 & %M0) & %I1.2)",
+                "%Q2.3 := ((%I1.0 & %M0) & %I1.4)"
+            ]
+        );
+        assert_eq!(oddities(code), [""; 0]);
+    }
+
+    #[test]
+    fn stack_oddities() {
+        assert_eq!(oddities("LD %M0\nMPS\nST %M1"), ["StackLeft(1) at MPS"]);
+        assert_eq!(
+            oddities("! LD %M0\nMPS\nST %M1\nMPP\nST %M2\n! MRD\nST %M3"),
+            ["SentenceStart at MRD", "StackUnderflow at MRD"]
+        );
+        assert_eq!(
+            oddities("LD %M0\nMPS\nMPS\nMPS\nMPS\nST %M1\nMPP\nMPP\nMPP\nMPP\nST %M2"),
+            ["StackDepth(4) at MPS"]
+        );
+        // A value that stays there anyhow is the cause; one that a jump alone leaves is not at the end of the sentence.
+        assert_eq!(oddities("LD %M0\nMPS\nJMPC %L1\nST %M1"), ["StackLeft(1) at MPS"]);
+        assert_eq!(oddities("LD %M0\nMPS\nJMPC %L1\nMPP\nST %M1"), ["StackMismatch at JMPC %L1"]);
+    }
+
+    #[test]
+    fn what_must_not_stand_in_parentheses() {
+        let inside = |what: &str| oddities(&format!("LD %M0\nAND( %M1\n{what}\n)\nST %M2\n! %L1:\nLD %M0\nST %M9"));
+        assert_eq!(inside("OR %M5"), [""; 0]);
+        assert_eq!(inside("ST %M5"), ["StoreInParentheses at ST %M5"]);
+        assert_eq!(inside("[%MW0:=1]"), ["StoreInParentheses at [%MW0:=1]"]);
+        assert_eq!(inside("CU %C8"), ["StoreInParentheses at CU %C8"]);
+        assert_eq!(inside("JMPC %L1"), ["JumpInParentheses at JMPC %L1"]);
+        assert_eq!(inside("SR5"), ["JumpInParentheses at SR5"]);
+        assert_eq!(inside("%L5:\nOR %M3"), ["LabelInParentheses at %L5:"]);
+        assert_eq!(inside("MPS\nMPP"), ["StackInParentheses at MPS"]);
+    }
+
+    #[test]
+    fn an_unclosed_parenthesis_is_one_mistake() {
+        assert_eq!(
+            oddities("! LD %M0\nAND( %M1\nST %M2\nMPS\n! LD %M3\nST %M4"),
+            ["UnclosedParenthesis at AND( %M1", "StackLeft(1) at MPS"]
+        );
+        assert_eq!(oddities("LD %M0\nAND( %M1\nOR( %M2\n)\nST %M3"), ["UnclosedParenthesis at AND( %M1"]);
+        assert_eq!(oddities("LD %M0\n)\nST %M3"), ["UnopenedParenthesis at )"]);
+    }
+
+    #[test]
+    fn nine_levels_are_too_many() {
+        let nest = |n: usize| format!("LD %M0\n{}{}ST %M1", "AND( %M2\n".repeat(n), ")\n".repeat(n));
+        assert_eq!(oddities(&nest(8)), [""; 0]);
+        assert_eq!(oddities(&nest(9)), ["ParenthesisDepth(9) at AND( %M2"]);
+    }
+
+    #[test]
+    fn sentences_start_with_a_result_and_end_with_an_action() {
+        assert_eq!(oddities("! AND %M0\nST %M1\n! ST %M2"), ["SentenceStart at AND %M0", "SentenceStart at ST %M2"]);
+        assert_eq!(oddities("! [%MW0:=1]"), ["SentenceStart at [%MW0:=1]"]);
+        assert_eq!(oddities("! JMP %L1\n! %L1: SR5\n! RET"), [""; 0]);
+        assert_eq!(oddities("LD %M0\nAND %M1\nLD %M2\nST %M3"), ["TestWithoutAction at LD %M0\nAND %M1"]);
+        assert_eq!(oddities("LD %M0\nST %M3\nAND %M1"), ["TestWithoutAction at AND %M1"]);
+        assert_eq!(oddities("LD %M0\nJMP %L1\n! %L1:\nLD %M1\nST %M2"), ["TestWithoutAction at LD %M0"]);
+        assert_eq!(oddities("LD %M0\nMPS\nAND %M1\nMPP\nST %M2"), ["TestWithoutAction at AND %M1"]);
+        assert_eq!(oddities("LD %M0\nSR5\n! LD %M1\nIN %TM1\n! LD %M2\nENDC"), [""; 0]);
+        let receptivity = part("! LD %M0\nAND %M1", Part::Chart("CHART - PAGE 0 %X(0) --> %X(1)".into()));
+        assert_eq!(receptivity.oddities, []);
+    }
+
+    #[test]
+    fn what_is_not_read_is_not_judged() {
+        // PL7:3351-3358 is cut off by dots.
+        assert_eq!(oddities("! LD %M0\nJMPC %L10\n! %L10:\nLD %I1.3\nAND %M20\n. . . . ."), [""; 0]);
+        assert_eq!(oddities("! LD %M0\nAND( %M1\nMPS\n. . . . .\nMPP\n)\nST %M2"), [""; 0]);
+        assert_eq!(oddities("! FOO %M0\nST %M2"), [""; 0]);
+        assert_eq!(oddities("! LD %M0\nFOO %M1\n)\nMPP\nST %M2"), [""; 0]);
+        assert_eq!(oddities("! LD( %M0\nOR %M1\n)\nST %M2"), [""; 0]);
+    }
+
+    #[test]
+    fn jumps_merge_at_the_label() {
+        let code = "! LD %M0\nJMPC %L10\n! LD %I1.1\nST %Q2.0\n! %L10:\nLD %I1.3\nST %Q2.1";
+        assert_eq!(statements(code), ["jump when %M0", "!%M0: %Q2.0 := %I1.1", "%Q2.1 := %I1.3"]);
+        let model = model("! JMP %L10\n! LD %I1.1\nST %Q2.0\n! %L10:\nLD %I1.3\nST %Q2.1");
+        assert_eq!(model.unreachable.len(), 1);
+        let model = super::tests::model("! %L1:\nLD %M0\nST %M1\nJMPC %L1");
+        assert_eq!((model.loops.len(), model.loops[0].exits), (1, true));
+    }
+
+    #[test]
+    fn operations_depend_on_the_result() {
+        assert_eq!(statements("LD %M0\n[%MW10:=%MW0+100]\nST %M1"), ["%M0: %MW10 := Add(%MW0, 100)", "%M1 := %M0"]);
+        assert_eq!(statements("LD TRUE\n[%MW10:=%MW0+100]"), ["%MW10 := Add(%MW0, 100)"]);
+        assert_eq!(statements("LD [%MW10<1000]\nAND %M5\nRETCN"), ["return when !((%MW10 < 1000) & %M5)"]);
+    }
+
+    #[test]
+    fn both_forms_of_a_block() {
+        assert_eq!(
+            statements("LD %I1.2\nCU %C8\nLD %M0\nR %C8\nLD %M1\nS %MN2\nLD %M2\nIN %TM1"),
+            ["count-up of %C8 when %I1.2", "reset of %C8 when %M0", "start of %MN2 when %M1", "start of %TM1 when %M2"]
+        );
+        // PL7:3295-3303.
+        let code = "! BLK %C8\nLDR %I1.1\nR\nLD %I1.2\nAND %M0\nCU\nOUT_BLK\nLD D\nAND %M1\nST %Q2.4\nEND_BLK";
+        assert_eq!(
+            statements(code),
+            ["reset of %C8 when ^%I1.1", "count-up of %C8 when (%I1.2 & %M0)", "%Q2.4 := (%C8.D & %M1)"]
+        );
+        assert_eq!(oddities(code), [""; 0]);
+        assert_eq!(oddities("! BLK Tempo\nLD %M0\nIN\nOUT_BLK\nLD Q\nST %M1\nEND_BLK"), [""; 0]);
+    }
+
+    #[test]
+    fn block_oddities() {
+        let kinds = |text: &str| -> Vec<String> {
+            let oddities = part(text, Part::Main).oddities;
+            oddities
+                .into_iter()
+                .map(|it| match it.kind {
+                    OddityKind::BlockStructure(message) | OddityKind::OperandType(message) => message,
+                    other => format!("{other:?}"),
+                })
+                .collect()
+        };
+        assert_eq!(kinds("LD %M0\nCU %TM1"), ["`%TM1` has no input `CU`"]);
+        assert_eq!(kinds("LD %M0\nCU %MW1"), ["`CU` takes a function block, and `%MW1` is a word"]);
+        assert_eq!(kinds("BLK %TM1\nLD %M0\nIN\nOUT_BLK\nLD D\nST %M1\nEND_BLK"), ["`%TM1` has no output `D`"]);
+        assert_eq!(kinds("BLK %C8\nLD %M0\nST %M1\nEND_BLK"), ["`ST` stands before `OUT_BLK` of `%C8`"]);
+        assert_eq!(
+            kinds("BLK %C8\nBLK %TM1\nEND_BLK\nEND_BLK"),
+            ["`BLK` is not closed by `END_BLK`", "`END_BLK` stands without `BLK`"]
+        );
+        assert_eq!(kinds("OUT_BLK"), ["`OUT_BLK` stands without `BLK`"]);
+        assert_eq!(kinds("BLK %MW0\nLD %M0\nIN\nEND_BLK"), ["`BLK` takes a function block, and `%MW0` is a word"]);
+        assert_eq!(
+            kinds("LD %MW0\nAND [%MW0+1]\nST 5"),
+            [
+                "`LD` takes a bit, and `%MW0` is a word",
+                "`AND` takes a comparison in its brackets, not a number",
+                "`ST` writes a bit, and `5` is a constant"
+            ]
+        );
     }
 }

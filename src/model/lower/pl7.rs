@@ -263,7 +263,12 @@ impl Pl7 {
         let mut values = Vec::new();
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
-            values.push(self.argument(&argument, function, position).1);
+            // What has a value is a function, known or not, and not an instance that keeps what it is given.
+            let value = match function {
+                Some(_) => self.argument(&argument, function, position).1,
+                None => self.expr(&argument).0,
+            };
+            values.push(value);
         }
         let name = it.name().map(|it| it.text().to_ascii_uppercase()).unwrap_or_default();
         let kind = match function.and_then(|it| it.result) {

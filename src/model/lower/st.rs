@@ -199,3 +199,224 @@ fn keyword(node: &SyntaxNode) -> TextRange {
     let mut tokens = node.children_with_tokens().filter_map(rowan::NodeOrToken::into_token);
     tokens.find(|it| !it.kind().is_trivia()).map_or_else(|| node.text_range(), |it| it.text_range())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::{Part, Task};
+    use crate::model::expr::Expr;
+    use crate::model::unit::{Callee, Mode, OddityKind};
+
+    fn model(text: &str) -> UnitModel {
+        let parse = crate::syntax::pl7::parse_st(text);
+        assert_eq!(parse.errors(), [], "{text}");
+        lower(&parse.syntax(), Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main })
+    }
+
+    /// What each statement does, with the path to it.
+    fn statements(text: &str) -> Vec<String> {
+        let model = model(text);
+        let name = |access: u32| model.object(model.accesses[access as usize].object).text.to_string();
+        let mut lines = Vec::new();
+        for it in &model.statements {
+            let what = match it.kind {
+                StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
+                    format!("{} := {}", name(access), show(&model, value))
+                }
+                StatementKind::Set { access, .. } => format!("set {}", name(access)),
+                StatementKind::Reset { access, .. } => format!("reset {}", name(access)),
+                StatementKind::Drive { access, pin, .. } => format!("{} of {}", pin.describe(), name(access)),
+                StatementKind::Call(call) => format!("call {}", model.calls[call as usize].text),
+                StatementKind::Jump(_) => "jump".to_owned(),
+                StatementKind::Exit => "exit".to_owned(),
+                StatementKind::Return { .. } => "return".to_owned(),
+                _ => continue,
+            };
+            let path = show(&model, it.path);
+            lines.push(if path == "true" { what } else { format!("{path}: {what}") });
+        }
+        lines
+    }
+
+    fn show(model: &UnitModel, id: ExprId) -> String {
+        match model.exprs.get(id) {
+            Expr::Bool(value) => value.to_string(),
+            Expr::Int(value) => value.to_string(),
+            Expr::Float(bits) => format!("{:?}", f64::from_bits(*bits)),
+            Expr::Text(text) => text.to_string(),
+            Expr::Read { object, .. } => model.object(*object).text.to_string(),
+            Expr::Edge { object, rising, .. } => {
+                format!("{}{}", if *rising { "^" } else { "v" }, model.object(*object).text)
+            }
+            Expr::Not(a) => format!("!{}", show(model, *a)),
+            Expr::And(a, b) => format!("({} & {})", show(model, *a), show(model, *b)),
+            Expr::Or(a, b) => format!("({} | {})", show(model, *a), show(model, *b)),
+            Expr::Xor(a, b) => format!("({} ^ {})", show(model, *a), show(model, *b)),
+            Expr::Compare(op, a, b) => format!("({} {} {})", show(model, *a), op.as_str(), show(model, *b)),
+            Expr::Binary(op, a, b) => format!("{op:?}({}, {})", show(model, *a), show(model, *b)),
+            Expr::Negate(a) => format!("-{}", show(model, *a)),
+            Expr::Call(name, list) => {
+                let list: Vec<String> = list.iter().map(|it| show(model, *it)).collect();
+                format!("{name}({})", list.join(", "))
+            }
+            Expr::Opaque(_) => "?".to_owned(),
+        }
+    }
+
+    fn accesses(text: &str, wanted: impl Fn(Mode) -> bool) -> Vec<String> {
+        let model = model(text);
+        let accesses = model.accesses.iter().filter(|it| wanted(it.mode));
+        accesses.map(|it| format!("{:?} {}", it.mode, model.object(it.object).text)).collect()
+    }
+
+    #[test]
+    fn expressions_have_the_order_of_the_manual() {
+        // PL7:4032, 4042, 4062.
+        assert_eq!(
+            statements("! %MW0 := NOT %MW3 * 25 AND %MW10 + %MW12;"),
+            ["%MW0 := And(Mul(NOT(%MW3), 25), Add(%MW10, %MW12))"]
+        );
+        assert_eq!(statements("! %MW0 := %MW34 * 2 REM 6;"), ["%MW0 := Rem(Mul(%MW34, 2), 6)"]);
+        assert_eq!(statements("! %MW0 := (%MW10+%MW11)*%MW12;"), ["%MW0 := Mul(Add(%MW10, %MW11), %MW12)"]);
+        assert_eq!(statements("! %M0 := NOT %M1 AND %M2 OR RE %M3 XOR FALSE;"), ["%M0 := ((!%M1 & %M2) | ^%M3)"]);
+        assert_eq!(
+            statements("! %M0 := 1; %MW0 := -32768; %MF0 := -%MF2 * 1.5;"),
+            ["%M0 := true", "%MW0 := -32768", "%MF0 := Mul(-%MF2, 1.5)"]
+        );
+    }
+
+    #[test]
+    fn arms_exclude_each_other_and_meet_again() {
+        let code = "! IF %M0 THEN %M5 := %M10; ELSIF %M1 THEN SET %M6; ELSE RESET %M7; END_IF; %M8 := TRUE;";
+        assert_eq!(
+            statements(code),
+            ["%M0: %M5 := %M10", "(!%M0 & %M1): set %M6", "(!%M0 & !%M1): reset %M7", "%M8 := true"]
+        );
+        assert_eq!(statements("! IF %M0 THEN RETURN; END_IF; %M8 := TRUE;"), ["%M0: return", "!%M0: %M8 := true"]);
+        let both = model("! IF %M0 THEN RETURN; ELSE HALT; END_IF; %M8 := TRUE;");
+        assert_eq!(both.unreachable.len(), 1);
+        let never = model("! IF FALSE THEN %M8 := TRUE; END_IF; %M9 := TRUE;");
+        let causes: Vec<DeadCause> = never.unreachable.iter().map(|it| it.cause).collect();
+        assert_eq!(causes, [DeadCause::FalseCondition]);
+    }
+
+    #[test]
+    fn listings_of_the_manual() {
+        // PL7:3836-3844.
+        let code = "! (*Action conditionnelle*) IF %M0 AND %M12 THEN RESET %M0; INC %MW4; %MW10:=%MW8+%MW9; END_IF;";
+        assert_eq!(
+            statements(code),
+            ["(%M0 & %M12): reset %M0", "(%M0 & %M12): %MW4 := Add(%MW4, 1)", "(%M0 & %M12): %MW10 := Add(%MW8, %MW9)"]
+        );
+        // PL7:3853-3867: an arm of an ELSEIF has the negation of the one before.
+        let code = "! IF %M0 AND %M1 THEN SET %M10; ELSEIF %M0 OR %M1 THEN SET %M11; ELSE RESET %M10; END_IF;";
+        assert_eq!(
+            statements(code),
+            [
+                "(%M0 & %M1): set %M10",
+                "(!(%M0 & %M1) & (%M0 | %M1)): set %M11",
+                "(!(%M0 & %M1) & !(%M0 | %M1)): reset %M10"
+            ]
+        );
+        // PL7:3434-3450: both ways of the inner IF, one of which leaves the loop.
+        let code = "! IF %M0 THEN FOR %MW99:=0 TO 31 DO IF %MW100[%MW99]<>0 THEN %MW10:=%MW100[%MW99]; %M1:=TRUE; EXIT; \
+                    ELSE %M1:=FALSE; END_IF; END_FOR; ELSE %M1:=FALSE; END_IF;";
+        let it = model(code);
+        assert!(it.loops[0].exits && it.unreachable.is_empty());
+        let writes = accesses(code, |it| it == Mode::Assign);
+        assert_eq!(writes, ["Assign %M1", "Assign %M1", "Assign %M1"]);
+        // PL7:3949: the misprint is read as what was meant.
+        assert_eq!(model("! FOR %MW4=0 TO %MW23+12 DO SET %M25[%MW4]; END_FOR;").loops.len(), 1);
+    }
+
+    #[test]
+    fn loops() {
+        // PL7:3985-3999: the EXIT leaves the inner loop alone.
+        let code = "! WHILE %MW1<124 DO %MW2:=0; REPEAT INC %MW2; IF %M0 THEN EXIT; END_IF; UNTIL %MW2>25 END_REPEAT; INC %MW1; END_WHILE;";
+        let it = model(code);
+        let loops: Vec<(LoopKind, bool, Option<u32>)> =
+            it.loops.iter().map(|it| (it.kind, it.exits, it.parent)).collect();
+        assert_eq!(loops, [(LoopKind::While, false, None), (LoopKind::Repeat, true, Some(0))]);
+        assert!(it.unreachable.is_empty());
+        let it = model("! FOR %MW4 := 0 TO %MW23+12 DO SET %M25[%MW4]; END_FOR; %M0 := TRUE;");
+        let index = it.loops[0].index.map(|index| it.object(index).text.to_string());
+        assert_eq!(index.as_deref(), Some("%MW4"));
+        assert_eq!(it.statements.last().map(|it| it.path), Some(Exprs::TRUE), "the loop comes to an end");
+        // Values that the loop may have changed are others behind it.
+        let it = model("! %MW0 := %MW5; WHILE %M0 DO INC %MW5; END_WHILE; %MW1 := %MW5;");
+        let versions: Vec<u32> =
+            it.accesses.iter().filter(|a| it.object(a.object).text == "%MW5").map(|it| it.version).collect();
+        assert!(versions.first() < versions.last());
+        // An endless loop that only a RETURN leaves.
+        let it = model("! WHILE TRUE DO IF %M0 THEN RETURN; END_IF; END_WHILE;");
+        assert!(it.loops[0].exits);
+    }
+
+    #[test]
+    fn an_index_that_cannot_be_written_is_not_written() {
+        assert_eq!(accesses("! FOR %KW0 := 0 TO 5 DO ; END_FOR;", Mode::writes), [""; 0]);
+        assert_eq!(accesses("! FOR %MW0 := 0 TO 5 DO ; END_FOR;", Mode::writes), ["Store %MW0"]);
+    }
+
+    #[test]
+    fn jumps() {
+        let it = model("! IF %M0 THEN JUMP %L5; END_IF; %M1 := TRUE; ! %L5: %M2 := TRUE;");
+        assert_eq!(it.jumps[0].target, Some(0));
+        assert_eq!(it.statements.last().map(|it| it.path), Some(Exprs::TRUE));
+        assert!(it.loops.is_empty());
+        let it = model("! %L5: INC %MW0; ! IF %M0 THEN JUMP %L5; END_IF;");
+        assert_eq!(it.loops.iter().map(|it| it.kind).collect::<Vec<_>>(), [LoopKind::Jump]);
+    }
+
+    #[test]
+    fn functions_write_what_they_write() {
+        let writes = |text: &str| accesses(text, Mode::writes);
+        assert_eq!(writes("! SORT_ARW(1, %MW0:10);"), ["InOut %MW0:10"]);
+        assert_eq!(writes("! RRTC(%MW0:4);"), ["Output %MW0:4"]);
+        assert_eq!(writes("! %MW0 := SQRT(%MW4);"), ["Store %MW0"]);
+        // A function that has a value and is not known reads; arguments that the manual does not give may be written.
+        assert_eq!(writes("! %MW0 := Unheard(%MW4);"), ["Store %MW0"]);
+        assert_eq!(writes("! READ_VAR(%MW4, %KW5, %MW10:4);"), ["InOut %MW4", "InOut %MW10:4"]);
+        assert_eq!(statements("! RESET %C8; START %TM1;"), ["reset of %C8", "start of %TM1"]);
+    }
+
+    #[test]
+    fn instances_may_change_what_they_are_given() {
+        let text = "! Pump(%I1.0, %M5); %M6 := Pump.Done; Pump(%I1.1, %M5); %M7 := Pump.Done;";
+        assert_eq!(accesses(text, Mode::writes), ["InOut %M5", "Assign %M6", "InOut %M5", "Assign %M7"]);
+        let it = model(text);
+        assert!(it.calls.iter().all(|it| it.callee == Callee::Instance("pump".into())));
+        let done: Vec<u32> =
+            it.accesses.iter().filter(|a| it.object(a.object).text == "Pump.Done").map(|it| it.version).collect();
+        assert!(done[0] < done[1], "the instance ran in between");
+    }
+
+    #[test]
+    fn exposed_reads() {
+        let exposed = |text: &str, name: &str| -> Vec<bool> {
+            let it = model(text);
+            let reads = it.accesses.iter().filter(|a| a.mode == Mode::Read && it.object(a.object).text == name);
+            reads.map(|it| it.exposed).collect()
+        };
+        assert_eq!(exposed("! %M0 := %I1.0; %M1 := %M0;", "%M0"), [false]);
+        assert_eq!(exposed("! IF %M5 THEN %M0 := %I1.0; END_IF; %M1 := %M0;", "%M0"), [true]);
+        assert_eq!(exposed("! IF %M5 THEN %M0 := %I1.0; %M1 := %M0; END_IF;", "%M0"), [false]);
+        assert_eq!(exposed("! %M0 := %I1.0; SR5; %M1 := %M0;", "%M0"), [true]);
+    }
+
+    #[test]
+    fn indexed_names_differ_by_their_index() {
+        let it = model("! %MW0 := Tab[%MW1] + Tab[%MW2];");
+        let names: Vec<&str> =
+            it.objects.iter().map(|it| it.text.as_str()).filter(|it| it.starts_with("Tab")).collect();
+        assert_eq!(names, ["Tab[%MW1]", "Tab[%MW2]"]);
+    }
+
+    #[test]
+    fn operands_that_are_none() {
+        let kinds = |text: &str| -> Vec<OddityKind> { model(text).oddities.into_iter().map(|it| it.kind).collect() };
+        assert!(matches!(kinds("! %MW0 := MW108[%MW2];").as_slice(), [OddityKind::Address(_)]));
+        assert!(matches!(kinds("! %MW0 := 99999999999;").as_slice(), [OddityKind::Literal(_)]));
+        assert_eq!(statements("! MW0 := 5;"), [""; 0], "what is no object is not written");
+    }
+}

@@ -78,14 +78,13 @@ fn first_token(node: &SyntaxNode) -> Option<SyntaxToken> {
 
 fn trimmed_range(node: &SyntaxNode) -> TextRange {
     let whole = node.text_range();
-    let mut significant = node
-        .descendants_with_tokens()
-        .filter_map(rowan::NodeOrToken::into_token)
-        .filter(|it| !it.kind().is_trivia())
-        .map(|it| it.text_range());
-    match significant.next() {
-        Some(first) => significant.fold(first, |range, it| range.cover(it)),
-        None => TextRange::empty(whole.start()),
+    let is_inside = |it: &SyntaxToken| whole.contains_range(it.text_range());
+    let significant = |it: &SyntaxToken| !it.kind().is_trivia();
+    let forward = std::iter::successors(node.first_token(), SyntaxToken::next_token);
+    let backward = std::iter::successors(node.last_token(), SyntaxToken::prev_token);
+    match (forward.take_while(is_inside).find(significant), backward.take_while(is_inside).find(significant)) {
+        (Some(first), Some(last)) => first.text_range().cover(last.text_range()),
+        _ => TextRange::empty(whole.start()),
     }
 }
 

@@ -712,9 +712,21 @@ impl Grammar<'_, '_> {
             _ => {}
         }
         while let Some(kind) = self.p.current() {
+            if matches!(kind, Semicolon | Elision) {
+                self.p.bump();
+                continue;
+            }
+            if self.at_label() {
+                self.labelled_instr();
+                continue;
+            }
+            if let Some(op) = self.op_here() {
+                let instr = self.p.start();
+                self.known_instr(op);
+                self.p.complete(instr, Instr);
+                continue;
+            }
             match kind {
-                Semicolon | Elision => self.p.bump(),
-                Ident if self.at_label() || self.op_here().is_some() => self.instr(),
                 Ident => match self.keyword() {
                     Some(Keyword::Network | Keyword::EndBlock(_)) => break,
                     Some(Keyword::Block(_)) if self.block_kind().is_some() => break,
@@ -736,9 +748,9 @@ impl Grammar<'_, '_> {
                         | Keyword::PrintedNetwork,
                     ) => self.bad_statement(format!("`{}` is not allowed in code", self.p.current_text())),
                     None if in_listing && self.at_listing_header() => break,
-                    None => self.instr(),
+                    None => self.unknown_instr(),
                 },
-                Operator | Eq | Plus | RParen => self.instr(),
+                Operator => self.unknown_instr(),
                 _ => self.bad_statement("expected an instruction"),
             }
         }
@@ -771,23 +783,27 @@ impl Grammar<'_, '_> {
         self.p.nth(1) == Some(Ident) && !self.p.nth_newline_before(1) && self.p.nth_text(1).eq_ignore_ascii_case("MCR")
     }
 
-    fn instr(&mut self) {
+    fn labelled_instr(&mut self) {
         let instr = self.p.start();
-        if self.at_label() {
-            let label = self.p.start();
-            self.p.bump();
-            self.p.bump();
-            self.p.complete(label, Label);
-            if self.at_statement_end() || self.p.at(Elision) || self.at_label() {
-                self.p.eat(Semicolon);
-                self.p.complete(instr, Instr);
-                return;
+        let label = self.p.start();
+        self.p.bump();
+        self.p.bump();
+        self.p.complete(label, Label);
+        let alone = self.at_statement_end() || self.p.at(Elision) || self.at_label() || self.keyword().is_some();
+        if alone {
+            self.p.eat(Semicolon);
+        } else {
+            match self.op_here() {
+                Some(op) => self.known_instr(op),
+                None => self.unknown_mnemonic(),
             }
         }
-        match self.op_here() {
-            Some(op) => self.known_instr(op),
-            None => self.unknown_instr(),
-        }
+        self.p.complete(instr, Instr);
+    }
+
+    fn unknown_instr(&mut self) {
+        let instr = self.p.start();
+        self.unknown_mnemonic();
         self.p.complete(instr, Instr);
     }
 
@@ -798,11 +814,11 @@ impl Grammar<'_, '_> {
             Op::Nop if word.len() == 4 => OperandRule::None,
             _ => op.operand(),
         };
-        self.p.bump_as(if self.p.at(Ident) || self.p.at(RParen) {
-            self.p.current().unwrap_or(Ident)
-        } else {
-            Operator
-        });
+        match self.p.current() {
+            Some(Ident | RParen) => self.p.bump(),
+            // `=` and `+`
+            _ => self.p.bump_as(Operator),
+        }
         if matches!(op, Op::McrClose) || (self.p.at(LParen) && opens(op)) {
             self.p.bump();
         }
@@ -838,7 +854,7 @@ impl Grammar<'_, '_> {
         }
     }
 
-    fn unknown_instr(&mut self) {
+    fn unknown_mnemonic(&mut self) {
         let word = self.p.current_text();
         let message = match self.p.current() {
             Some(Ident) if self.p.nth(1) == Some(Assign) => format!("the parameter `{word}` belongs to no `CALL`"),

@@ -15,7 +15,8 @@ enum Lexeme {
     // No-break spaces stand inside French quotes.
     #[regex(r"[ \t\x0B\x0C\u{A0}\u{202F}\u{FEFF}]+")]
     Blanks,
-    #[regex(r"\r\n|\n|\r")]
+    // With the blanks that indent the next line: one token the less for each line.
+    #[regex(r"(\r\n|\n|\r)[ \t]*")]
     Newline,
     #[regex(r"//[^\r\n]*", allow_greedy = true)]
     // The symbol comment of a listing printed with symbol information.
