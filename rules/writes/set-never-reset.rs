@@ -11,6 +11,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !cx.program.complete || cx.program.writes_indirectly() {
         return;
     }
+    let hidden = Hidden::new(cx);
     for (at, uses) in (0..).zip(&cx.program.objects) {
         let class = uses.object.class;
         let is_bit = uses.object.ty == Type::Bool || class == Class::Symbol;
@@ -25,7 +26,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let unread = class == Class::Memory && !is_read(cx, at, uses);
         let constant_one = missing == Mode::Reset
             && sets.iter().any(|it| it.it.own || !it.it.conditional || cx.program.is_startup(it.unit));
-        if unread || constant_one || is_written_otherwise(cx, at, uses) || may_have_another_name(cx, class, missing) {
+        if unread || constant_one || is_written_otherwise(cx, at, uses) || hidden.may_hold(class, missing) {
             continue;
         }
         let Some((first, others)) = places.split_first() else { continue };
@@ -63,12 +64,30 @@ fn is_written_otherwise(cx: &ProgramCx<'_>, at: u32, uses: &ObjectUses<'_>) -> b
     by_itself || cx.neighbours(at).iter().any(|&it| cx.program.objects[it as usize].is_written())
 }
 
-/// Whether the missing write may go by another name: a symbol of the program for an address, or an address for a symbol.
-fn may_have_another_name(cx: &ProgramCx<'_>, class: Class, missing: Mode) -> bool {
-    let gives = |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset));
-    if class != Class::Symbol {
-        return cx.program.has_unresolved(gives);
+/// Writes that may be the missing ones under another name: of a symbol that nothing resolves for an address, and of any
+/// address for such a symbol.
+struct Hidden {
+    by_symbol: [bool; 2],
+    by_address: [bool; 2],
+}
+
+impl Hidden {
+    fn new(cx: &ProgramCx<'_>) -> Self {
+        let by_address = |it: &ObjectUses<'_>| matches!(it.object.class, Class::Output | Class::Memory | Class::Data);
+        let gives = |missing: Mode| {
+            move |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset))
+        };
+        let addressed = |missing: Mode| {
+            cx.program.objects.iter().filter(|it| by_address(it)).any(|it| it.with_mode(gives(missing)).next().is_some())
+        };
+        Self {
+            by_symbol: [Mode::Set, Mode::Reset].map(|it| cx.program.has_unresolved(gives(it))),
+            by_address: [Mode::Set, Mode::Reset].map(addressed),
+        }
     }
-    let by_address = |it: &ObjectUses<'_>| matches!(it.object.class, Class::Output | Class::Memory | Class::Data);
-    cx.program.objects.iter().any(|it| by_address(it) && it.uses.iter().any(|it| gives(it.mode)))
+
+    fn may_hold(&self, class: Class, missing: Mode) -> bool {
+        let [set, reset] = if class == Class::Symbol { self.by_address } else { self.by_symbol };
+        if missing == Mode::Set { set } else { reset }
+    }
 }

@@ -40,8 +40,11 @@ pub fn conflict<'a>(
 ) -> Option<(GlobalUse<'a>, Vec<GlobalUse<'a>>)> {
     /// Of more driving places of one object, only so many are compared.
     const MAX_COMPARED: usize = 256;
-    let uses: Vec<GlobalUse<'a>> =
-        uses.iter().filter(|it| !(program.is_startup(it.unit) || it.it.own && it.mode != Mode::Set)).copied().collect();
+    let uses: Vec<GlobalUse<'a>> = uses
+        .iter()
+        .filter(|it| !program.is_startup(it.unit) && (!it.it.own || it.mode == Mode::Set))
+        .copied()
+        .collect();
     let compared = &uses[..uses.len().min(MAX_COMPARED)];
     let at = (1..compared.len())
         .find(|&at| compared[..at].iter().any(|it| opposed(it, &compared[at]) && program.clash(it, &compared[at])))?;
