@@ -11,7 +11,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         if let OddityKind::Address(error) = &oddity.kind
             && error.kind == AddressErrorKind::OutOfRange
         {
-            sink.report(oddity.range, format!("`{}` does not exist: {}", oddity.text, error.message));
+            sink.report(oddity.range, format!("`{}` is out of range: {}", oddity.text, error.message));
         }
     }
 }

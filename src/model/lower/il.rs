@@ -15,13 +15,14 @@ use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{self, Class, Object, Type};
 use crate::model::unit::{Leave, Mode, Oddity, OddityKind, Pin};
 use crate::syntax::pl7::ast::{self, BracketContent, IlOperand};
-use crate::syntax::pl7::instructions::IlOp;
+use crate::syntax::pl7::instructions::{self, IlOp};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
 pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
     // A receptivity is a list of tests alone (PL7:4713-4749).
-    let tests_only = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"));
+    let tests_only = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
+        || is_bare_receptivity(root);
     let mut lowering = Lowering {
         pl7: Pl7::new(root, entity, Language::Pl7Il),
         tests_only,
@@ -42,6 +43,17 @@ pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
     }
     lowering.close_block(None);
     lowering.pl7.b.finish()
+}
+
+/// One sentence of tests without a heading: what documents print of a receptivity.
+fn is_bare_receptivity(root: &SyntaxNode) -> bool {
+    let Some(root) = ast::Root::cast(root.clone()) else { return false };
+    let mut sentences = root.sentences();
+    let (Some(only), None) = (sentences.next(), sentences.next()) else { return false };
+    root.headings().next().is_none()
+        && only
+            .instructions()
+            .all(|it| !it.is_operation() && it.op().is_none_or(|op| op.info().class == instructions::Class::Test))
 }
 
 struct Parenthesis {

@@ -661,7 +661,9 @@ impl Grammar<'_, '_> {
             let header = self.p.start();
             self.p.bump();
             self.block_name();
-            self.p.bump();
+            while !self.p.at_end() && !self.p.eat(Colon) {
+                self.p.bump();
+            }
             self.p.complete(header, BlockHeader);
         }
         while !self.p.at_end() && self.block_kind().is_none() && !self.at_listing_header() {
@@ -680,9 +682,24 @@ impl Grammar<'_, '_> {
         self.p.at(Ident)
             && self.p.newline_before()
             && matches!(self.p.nth(1), Some(Ident | Address | QuotedSymbol))
-            && self.p.nth(2) == Some(Colon)
-            && self.p.nth_newline_before(3)
+            && self.ends_listing_header(2)
             && ["BLOC", "BLOCK", "BAUSTEIN"].into_iter().any(|it| self.p.at_text(it))
+    }
+
+    /// A colon at the end of the line, with at most a short remark in parentheses before it (S7:1316).
+    fn ends_listing_header(&self, from: usize) -> bool {
+        const LONGEST_REMARK: usize = 12;
+        if self.p.nth(from) == Some(Colon) {
+            return self.p.nth_newline_before(from + 1);
+        }
+        if self.p.nth(from) != Some(LParen) {
+            return false;
+        }
+        let close = (from + 1..from + LONGEST_REMARK).find(|&at| self.p.nth(at) == Some(RParen));
+        close.is_some_and(|at| {
+            let on_one_line = (from..=at + 1).all(|it| !self.p.nth_newline_before(it));
+            on_one_line && self.p.nth(at + 1) == Some(Colon) && self.p.nth_newline_before(at + 2)
+        })
     }
 
     /// One network; consumes a token at least, unless the block or listing ends here.
