@@ -5,6 +5,7 @@
 
 mod generator;
 
+use std::cell::LazyCell;
 use std::hint::black_box;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
@@ -19,10 +20,23 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 const SIZES: [(&str, usize); 3] = [("1 MB", 1_000_000), ("10 MB", 10_000_000), ("100 MB", 100_000_000)];
 
-fn texts(bytes: usize) -> [(&'static str, String, Detected); 2] {
-    let pl7 = generator::pl7(bytes, 7);
-    let detected = Input::from_text("bench.txt", &pl7[..10_000.min(pl7.len())], Dialect::Pl7).detected;
-    [("step7", generator::step7(bytes, 42), Detected::Step7), ("pl7", pl7, detected)]
+/// A generated program, made when a benchmark that is selected first needs it.
+struct Text {
+    name: &'static str,
+    text: LazyCell<String, Box<dyn FnOnce() -> String>>,
+    detected: Detected,
+}
+
+fn texts(bytes: usize) -> [Text; 2] {
+    let detected = Input::from_text("bench.txt", &generator::pl7(10_000, 7), Dialect::Pl7).detected;
+    let lazy = |make: fn(usize, u64) -> String, seed| {
+        let make: Box<dyn FnOnce() -> String> = Box::new(move || make(bytes, seed));
+        LazyCell::new(make)
+    };
+    [
+        Text { name: "step7", text: lazy(generator::step7, 42), detected: Detected::Step7 },
+        Text { name: "pl7", text: lazy(generator::pl7, 7), detected },
+    ]
 }
 
 /// Lexing, parsing and building the trees of all units of a file.
@@ -30,10 +44,11 @@ fn parse(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("lex and parse");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     for (size, bytes) in SIZES {
-        for (name, text, detected) in texts(bytes) {
-            group.throughput(Throughput::Bytes(text.len() as u64));
-            let units = split::split(&text, detected, &SplitHint::default());
+        for Text { name, text, detected } in texts(bytes) {
+            group.throughput(Throughput::Bytes(bytes as u64));
             group.bench_function(BenchmarkId::new(name, size), |bencher| {
+                let text = text.as_str();
+                let units = split::split(text, detected, &SplitHint::default());
                 bencher.iter_with_large_drop(|| {
                     let parse = |range: std::ops::Range<usize>, language| syntax::parse(language, &text[range]);
                     units.iter().map(|it| parse(it.range.into(), it.language)).collect::<Vec<_>>()
@@ -48,10 +63,11 @@ fn parse(criterion: &mut Criterion) {
 fn split(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("split");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
-    for (name, text, detected) in texts(10_000_000) {
-        group.throughput(Throughput::Bytes(text.len() as u64));
+    for Text { name, text, detected } in texts(10_000_000) {
+        group.throughput(Throughput::Bytes(10_000_000));
         group.bench_function(BenchmarkId::new(name, "10 MB"), |bencher| {
-            bencher.iter(|| split::split(black_box(&text), detected, &SplitHint::default()).len());
+            let text = text.as_str();
+            bencher.iter(|| split::split(black_box(text), detected, &SplitHint::default()).len());
         });
     }
     group.finish();
@@ -63,12 +79,12 @@ fn check(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("check, one thread");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     for (size, bytes) in SIZES {
-        for (name, text, detected) in texts(bytes) {
-            group.throughput(Throughput::Bytes(text.len() as u64));
-            let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
-            input.source.text = text.into();
-            input.detected = detected;
+        for Text { name, text, detected } in texts(bytes) {
+            group.throughput(Throughput::Bytes(bytes as u64));
             group.bench_function(BenchmarkId::new(name, size), |bencher| {
+                let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
+                input.source.text = text.as_str().into();
+                input.detected = detected;
                 bencher.iter_batched(
                     || vec![input.clone()],
                     |inputs| pool.install(|| db::check(inputs, Settings::default()).diagnostics.len()),
@@ -83,23 +99,23 @@ fn check(criterion: &mut Criterion) {
 /// One network of a 1 MB file is edited; all findings of the file are asked for again.
 fn edit(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("edit to findings");
-    for (name, text, detected) in texts(1_000_000) {
-        let (from, others) = if name == "step7" {
-            ("U     E ", ["U     E 1", "UN    E "])
-        } else {
-            ("INC %MW", ["INC %MW1", "DEC %MW"])
-        };
-        let middle = text.len() / 2 + text[text.len() / 2..].find(from).expect("the text has such a place");
-        let variants: Vec<String> =
-            others.iter().map(|to| format!("{}{to}{}", &text[..middle], &text[middle + from.len()..])).collect();
-        let mut db = RootDatabase::new(Settings::default(), None);
-        let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
-        input.source.text = text.into();
-        input.detected = detected;
-        let file = db.set_files([input])[0];
-        db::file_findings(&db, file);
-        let mut turn = 0;
+    for Text { name, text, detected } in texts(1_000_000) {
         group.bench_function(BenchmarkId::new(name, "1 MB file"), |bencher| {
+            let text = text.as_str();
+            let (from, others) = match name {
+                "step7" => ("U     E ", ["U     E 1", "UN    E "]),
+                _ => ("INC %MW", ["INC %MW1", "DEC %MW"]),
+            };
+            let middle = text.len() / 2 + text[text.len() / 2..].find(from).expect("the text has such a place");
+            let (before, after) = (&text[..middle], &text[middle + from.len()..]);
+            let variants = others.map(|to| format!("{before}{to}{after}"));
+            let mut db = RootDatabase::new(Settings::default(), None);
+            let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
+            input.source.text = text.into();
+            input.detected = detected;
+            let file = db.set_files([input])[0];
+            eprintln!("{name}: {} findings", db::file_findings(&db, file).len());
+            let mut turn = 0;
             bencher.iter(|| {
                 turn = 1 - turn;
                 db.set_text(file, variants[turn].as_str());

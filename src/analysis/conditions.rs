@@ -24,6 +24,9 @@ pub enum Verdict {
 
 /// Whether all of the conditions can hold at once.
 pub fn together(exprs: &Exprs, conditions: &[ExprId]) -> Verdict {
+    if conditions.iter().all(|&it| it == Exprs::TRUE) {
+        return Verdict::Possible;
+    }
     let mut conjuncts = Vec::new();
     for &condition in conditions {
         spread(exprs, condition, &mut conjuncts);

@@ -101,6 +101,9 @@ pub struct UnitFacts {
 /// More calls than this in a unit are not compared with one another.
 const MAX_COMPARED: usize = 48;
 
+/// The writes of one object in a unit are compared this many times; what is left counts as different places.
+const MAX_COMPARISONS: u32 = 2000;
+
 impl UnitFacts {
     pub fn new(model: &UnitModel) -> Self {
         let numbers = numbers(model);
@@ -257,10 +260,14 @@ fn groups(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> FxHashMap<u32, 
     let mut groups = FxHashMap::default();
     for list in writes.into_values().filter(|it| it.len() > 1) {
         let mut open: Vec<Vec<(u32, &Access)>> = Vec::new();
+        let mut budget = MAX_COMPARISONS;
         for (at, access) in list {
-            let fits = |group: &Vec<(u32, &Access)>| {
+            let mut fits = |group: &Vec<(u32, &Access)>| {
                 group.len() < MAX_COMPARED
-                    && group.iter().all(|&(other, before)| same_drive(model, values, (other, before), (at, access)))
+                    && group.iter().all(|&(other, before)| {
+                        budget = budget.saturating_sub(1);
+                        budget > 0 && same_drive(model, values, (other, before), (at, access))
+                    })
             };
             match open.iter_mut().take(MAX_COMPARED).find(|it| fits(it)) {
                 Some(group) => group.push((at, access)),

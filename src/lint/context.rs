@@ -35,12 +35,24 @@ impl<'a> UnitCx<'a> {
         Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: OnceCell::new() }
     }
 
-    /// Every node of a kind, in the order of the text. The tree is walked once for all rules.
+    /// Every node of a kind, in the order of the text; none for objects, names, literals and instructions. The tree is
+    /// walked once for all rules.
     pub fn nodes(&self, kind: SyntaxKind) -> &[SyntaxNode] {
         let nodes = self.nodes.get_or_init(|| {
             let mut nodes: FxHashMap<SyntaxKind, Vec<SyntaxNode>> = FxHashMap::default();
             for node in self.parse.syntax().descendants() {
-                nodes.entry(node.kind()).or_default().push(node);
+                let kind = node.kind();
+                // Leaves are by far the most, and no rule asks for all of them.
+                if !matches!(
+                    kind,
+                    SyntaxKind::ObjectRef
+                        | SyntaxKind::NameRef
+                        | SyntaxKind::Literal
+                        | SyntaxKind::IlInstr
+                        | SyntaxKind::Instr
+                ) {
+                    nodes.entry(kind).or_default().push(node);
+                }
             }
             nodes
         });

@@ -3,6 +3,7 @@
 //! rowan's own `NodeCache` spends most of its time waiting for memory in its intern table; a cache that stays in the
 //! processor's own and forgets on collision builds the same tree in two thirds of the time.
 
+use std::cell::RefCell;
 use std::hash::Hasher as _;
 
 use rowan::{GreenNode, GreenToken, NodeOrToken};
@@ -20,9 +21,16 @@ pub(super) struct TreeBuilder {
     children: Vec<NodeOrToken<GreenNode, GreenToken>>,
 }
 
+thread_local! {
+    /// The cache outlives the tree: units are small, and the next one has the same tokens.
+    static CACHE: RefCell<Vec<Option<GreenToken>>> = const { RefCell::new(Vec::new()) };
+}
+
 impl TreeBuilder {
     pub(super) fn new() -> Self {
-        Self { slots: vec![None; SLOTS], parents: Vec::new(), children: Vec::new() }
+        let mut slots = CACHE.take();
+        slots.resize(SLOTS, None);
+        Self { slots, parents: Vec::new(), children: Vec::new() }
     }
 
     pub(super) fn start_node(&mut self, kind: SyntaxKind) {
@@ -58,6 +66,7 @@ impl TreeBuilder {
         while !self.parents.is_empty() {
             self.finish_node();
         }
+        CACHE.set(std::mem::take(&mut self.slots));
         match self.children.pop() {
             Some(NodeOrToken::Node(node)) if self.children.is_empty() => node,
             last => {

@@ -147,6 +147,9 @@ struct OpenBlock {
     reported: bool,
 }
 
+/// Of more open parentheses, or of more loads that one accumulator may stem from, jumps carry nothing along.
+const MOST_CARRIED: usize = 16;
+
 /// The machine where a jump arrives.
 #[derive(Debug, Clone)]
 struct Arrival {
@@ -759,6 +762,11 @@ impl Machine {
         self.fresh |= arrival.fresh;
         for (accumulator, other) in self.accumulators.iter_mut().zip(&arrival.accumulators) {
             accumulator.meet(other);
+            if accumulator.loads.len() > MOST_CARRIED {
+                for load in accumulator.loads.drain(..) {
+                    self.loads[load as usize].used = true;
+                }
+            }
         }
         if self.br != arrival.br {
             self.br = self.b.exprs().opaque();
@@ -771,7 +779,7 @@ impl Machine {
 
     fn jump(&mut self, instr: &ast::Instr, when: ExprId, range: TextRange) {
         let Some((text, at)) = label_operand(instr) else { return };
-        if self.b.model.labels.iter().any(|it| it.name == text) {
+        if self.b.has_label(&text) || self.nesting.len() > MOST_CARRIED {
             self.keep_accumulators();
         } else {
             match self.arrivals.remove(&text) {

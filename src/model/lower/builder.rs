@@ -314,6 +314,11 @@ impl Builder {
         self.back_targets = labels;
     }
 
+    /// Whether a label of that name was passed already.
+    pub(super) fn has_label(&self, name: &str) -> bool {
+        self.label_index.contains_key(name)
+    }
+
     pub(super) fn is_reachable(&self) -> bool {
         self.path != Exprs::FALSE
     }

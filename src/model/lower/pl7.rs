@@ -2,6 +2,7 @@
 
 use rowan::TextRange;
 use rowan::ast::AstNode as _;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use super::builder::Builder;
@@ -24,6 +25,8 @@ pub(super) enum Kind {
 
 pub(super) struct Pl7 {
     pub(super) b: Builder,
+    /// Objects by their address as written, without index.
+    known: FxHashMap<SmolStr, ObjectId>,
 }
 
 /// The heading line, else the first sentence's first token.
@@ -40,7 +43,7 @@ fn heading(root: &SyntaxNode) -> TextRange {
 
 impl Pl7 {
     pub(super) fn new(root: &SyntaxNode, entity: Entity, language: Language) -> Self {
-        Self { b: Builder::new(entity, language, heading(root)) }
+        Self { b: Builder::new(entity, language, heading(root)), known: FxHashMap::default() }
     }
 
     fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
@@ -60,7 +63,14 @@ impl Pl7 {
     pub(super) fn object_ref(&mut self, it: &ast::ObjectRef) -> (ObjectId, TextRange) {
         let range = it.syntax().text_range();
         let address = it.address();
-        let parsed = match it.index() {
+        let index = it.index();
+        if index.is_none()
+            && let Some(&id) = self.known.get(&address)
+        {
+            return (id, range);
+        }
+        let is_direct = index.is_none();
+        let parsed = match index {
             Some(index) => {
                 if let Some(expr) = index.expr() {
                     self.expr(&expr);
@@ -74,8 +84,11 @@ impl Pl7 {
         };
         let id = match parsed {
             Ok(object) => self.b.object(object),
-            Err(error) => self.address_error(error, range, &address),
+            Err(error) => return (self.address_error(error, range, &address), range),
         };
+        if is_direct {
+            self.known.insert(address, id);
+        }
         (id, range)
     }
 

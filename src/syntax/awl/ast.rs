@@ -76,16 +76,10 @@ fn first_token(node: &SyntaxNode) -> Option<SyntaxToken> {
     tokens(node).next()
 }
 
+/// The builder puts blanks and comments before the node whose first token they precede, so that a node's own range has
+/// none at its ends.
 fn trimmed_range(node: &SyntaxNode) -> TextRange {
-    let whole = node.text_range();
-    let is_inside = |it: &SyntaxToken| whole.contains_range(it.text_range());
-    let significant = |it: &SyntaxToken| !it.kind().is_trivia();
-    let forward = std::iter::successors(node.first_token(), SyntaxToken::next_token);
-    let backward = std::iter::successors(node.last_token(), SyntaxToken::prev_token);
-    match (forward.take_while(is_inside).find(significant), backward.take_while(is_inside).find(significant)) {
-        (Some(first), Some(last)) => first.text_range().cover(last.text_range()),
-        _ => TextRange::empty(whole.start()),
-    }
+    node.text_range()
 }
 
 /// The text between quotes, or all of it.
@@ -390,7 +384,13 @@ impl Instr {
 
     /// `None` for a label alone and for an unknown mnemonic.
     pub fn op(&self, mnemonics: Mnemonics) -> Option<Op> {
-        instruction::lookup(&self.mnemonic()?.text, mnemonics)
+        let mut found = self.mnemonic_tokens();
+        let first = found.next()?;
+        // Nearly always the mnemonic is one word.
+        match found.next() {
+            None => instruction::lookup(first.text(), mnemonics),
+            Some(_) => instruction::lookup(&self.mnemonic()?.text, mnemonics),
+        }
     }
 
     pub fn operand(&self) -> Option<Operand> {
