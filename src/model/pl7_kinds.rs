@@ -190,7 +190,7 @@ fn join(a: Kind, b: Kind) -> Kind {
         return Kind::Bit;
     }
     let is_float = a.is_float() && b.is_float();
-    if !is_float && !(a.is_integer() && b.is_integer()) {
+    if !(is_float || a.is_integer() && b.is_integer()) {
         return Kind::Unknown;
     }
     // An operation with a double word is done in double words (PL7:4100-4114).
