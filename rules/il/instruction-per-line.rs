@@ -23,8 +23,11 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
                 .map(|pair| Edit { place: gap(pair), replacement: format!("\n     {}", cx.text_of(gap(pair)).trim()) })
                 .collect();
             let count = line.len();
-            sink.report(second.cover(*last), format!("{count} instructions stand on one line"))
-                .fix("Give each instruction a line", Applicability::Safe, edits);
+            sink.report(second.cover(*last), format!("{count} instructions stand on one line")).fix(
+                "Give each instruction a line",
+                Applicability::Safe,
+                edits,
+            );
         }
     }
 }

@@ -3,9 +3,12 @@
 use rowan::TextRange;
 use rowan::ast::AstNode as _;
 
-use crate::lint::{Applicability, Edit, Sink, UnitCx};
+use crate::lint::{Applicability, Edit, Reported, Sink, UnitCx};
 use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, UnaryOp};
+
+/// Bytes of an expression that a note repeats.
+const LONGEST_SHOWN: usize = 200;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
@@ -51,10 +54,10 @@ fn logical_chain(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, whole: &BinExp
     edits.sort_by_key(|it| it.place.start());
     let words: Vec<String> = words.iter().map(|it| format!("`{it}`")).collect();
     let place = whole.syntax().text_range();
-    sink.report(place, format!("{} are mixed without parentheses", words.join(" and ")))
-        .related_all(places.into_iter().map(|it| (it, "this is done first".to_owned())))
-        .note(format!("it is read as `{}`", grouped(cx, place, &edits)))
-        .fix("Write the parentheses that apply", Applicability::Safe, edits);
+    let found = sink
+        .report(place, format!("{} are mixed without parentheses", words.join(" and ")))
+        .related_all(places.into_iter().map(|it| (it, "this is done first".to_owned())));
+    grouping(cx, place, &edits, found).fix("Write the parentheses that apply", Applicability::Safe, edits);
 }
 
 /// `NOT a = b`, `NOT a + b`: the `NOT` belongs to `a` alone.
@@ -66,10 +69,10 @@ fn negated_operand(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, expr: &BinEx
     let Some(operator) = expr.operator() else { return };
     let place = negation.syntax().text_range();
     let edits: Vec<Edit<TextRange>> = parentheses(place).into();
-    sink.report(expr.syntax().text_range(), format!("`NOT` is done before `{}`", operator.text()))
-        .related(place, "this is done first")
-        .note(format!("it is read as `{}`", grouped(cx, expr.syntax().text_range(), &edits)))
-        .fix("Write the parentheses that apply", Applicability::Safe, edits);
+    let whole = expr.syntax().text_range();
+    let found =
+        sink.report(whole, format!("`NOT` is done before `{}`", operator.text())).related(place, "this is done first");
+    grouping(cx, whole, &edits, found).fix("Write the parentheses that apply", Applicability::Safe, edits);
 }
 
 fn operands(expr: &BinExpr) -> Vec<BinExpr> {
@@ -97,8 +100,16 @@ fn parentheses(place: TextRange) -> [Edit<TextRange>; 2] {
     ]
 }
 
-/// The text of an expression with the edits done, in one line.
-fn grouped(cx: &UnitCx<'_>, place: TextRange, edits: &[Edit<TextRange>]) -> String {
+/// Says how an expression is read: its text with the edits done, in one line, unless that is too long to help.
+fn grouping<'a>(
+    cx: &UnitCx<'_>,
+    place: TextRange,
+    edits: &[Edit<TextRange>],
+    found: Reported<'a, TextRange>,
+) -> Reported<'a, TextRange> {
+    if usize::from(place.len()) > LONGEST_SHOWN {
+        return found;
+    }
     let mut text = String::new();
     let mut at = place.start();
     for edit in edits {
@@ -107,5 +118,5 @@ fn grouped(cx: &UnitCx<'_>, place: TextRange, edits: &[Edit<TextRange>]) -> Stri
         at = edit.place.end().max(at);
     }
     text += cx.text_of(TextRange::new(at, place.end().max(at)));
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    found.note(format!("it is read as `{}`", text.split_whitespace().collect::<Vec<_>>().join(" ")))
 }

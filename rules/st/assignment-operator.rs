@@ -10,7 +10,8 @@ use crate::syntax::{SyntaxKind, SyntaxToken};
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let assignments = cx.nodes(SyntaxKind::AssignStmt).iter().cloned().filter_map(AssignStmt::cast);
     let loops = cx.nodes(SyntaxKind::ForStmt).iter().cloned().filter_map(ForStmt::cast);
-    let operators = assignments.map(|it| (it.target(), it.operator())).chain(loops.map(|it| (it.index(), it.operator())));
+    let operators =
+        assignments.map(|it| (it.target(), it.operator())).chain(loops.map(|it| (it.index(), it.operator())));
     for (target, operator) in operators {
         let Some(operator) = operator.filter(|it| it.kind() == SyntaxKind::Eq) else { continue };
         let target = target.map_or("", |it| cx.text_of(it.syntax().text_range()));

@@ -1,7 +1,7 @@
 //! T004: the index of a `FOR` is written inside its own loop.
 
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::unit::{LoopKind, Mode};
@@ -24,11 +24,12 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             }
         }
     }
+    let indices: FxHashSet<TextRange> = model.loops.iter().filter_map(|it| it.index_range).collect();
     for (id, it) in (0..).zip(&model.loops) {
         let (Some(places), Some(index)) = (writes.get(&id), it.index_range) else { continue };
         let Some((&first, others)) = places.split_first() else { continue };
         let text = cx.text_of(index);
-        let is_shared = model.loops.iter().any(|it| it.index_range == Some(first));
+        let is_shared = indices.contains(&first);
         let message = if is_shared {
             format!("the index `{text}` of the loop around this one counts here too")
         } else {

@@ -2,14 +2,18 @@
 
 use rowan::TextRange;
 use rowan::ast::AstNode as _;
+use rustc_hash::FxHashMap;
 
 use crate::lint::{Sink, UnitCx};
+use crate::model::expr::ObjectId;
 use crate::model::object::Rights;
 use crate::model::pl7_kinds::Kind;
 use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::{Expr, ForStmt};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    let indices = cx.model.loops.iter().filter_map(|it| it.index_range.zip(it.index));
+    let indices: FxHashMap<TextRange, ObjectId> = indices.collect();
     for statement in cx.nodes(SyntaxKind::ForStmt).iter().cloned().filter_map(ForStmt::cast) {
         let Some(index) = statement.index() else { continue };
         let place = index.syntax().text_range();
@@ -18,9 +22,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             (Expr::Name(_), _) => continue,
             (Expr::Object(_), Kind::Word | Kind::Double | Kind::Unknown) => {
                 // The model has resolved the object.
-                let read_only = |it: &&crate::model::unit::Loop| it.index_range == Some(place);
-                let object = cx.model.loops.iter().find(read_only).and_then(|it| it.index);
-                let Some(Rights::ReadOnly(source)) = object.map(|it| cx.model.object(it).rights) else { continue };
+                let rights = indices.get(&place).map(|it| cx.model.object(*it).rights);
+                let Some(Rights::ReadOnly(source)) = rights else { continue };
                 sink.report(place, format!("the index `{text}` of `FOR` cannot be written by the program"))
                     .note(format!("{source} gives it as not writable"));
                 continue;

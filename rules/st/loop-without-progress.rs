@@ -19,18 +19,21 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         if it.exits || runs_once || !is_known(&cx.model.exprs, condition) || calls_unknown(cx, it) {
             continue;
         }
-        let tested: Vec<&Access> =
-            cx.model.accesses.iter().filter(|it| place.contains_range(cx.model.place(it.anchor))).collect();
+        let body = accesses(cx, it);
+        let tested: Vec<&Access> = body.iter().filter(|it| place.contains_range(cx.model.place(it.anchor))).collect();
         let can_change = |access: &&Access| {
             let object = cx.model.object(access.object);
-            access.mode != Mode::Read || is_volatile(object.class) || is_written(cx, it, object)
+            access.mode != Mode::Read || is_volatile(object.class) || is_written(cx, body, object)
         };
         if tested.iter().any(can_change) {
             continue;
         }
         let message = match tested.first() {
             Some(first) => {
-                format!("nothing in this loop changes `{}`, on which its end depends", cx.model.object(first.object).text)
+                format!(
+                    "nothing in this loop changes `{}`, on which its end depends",
+                    cx.model.object(first.object).text
+                )
             }
             None => "this loop never ends: its condition is constant and nothing leaves it".to_owned(),
         };
@@ -82,13 +85,20 @@ fn is_volatile(class: Class) -> bool {
     )
 }
 
-fn is_written(cx: &UnitCx<'_>, it: &Loop, tested: &Object) -> bool {
-    cx.model.accesses.iter().any(|access| {
+/// What the statements of a loop read and write. Accesses stand in the order of their statements.
+fn accesses<'a>(cx: &UnitCx<'a>, it: &Loop) -> &'a [Access] {
+    let all = &cx.model.accesses;
+    let start = all.partition_point(|access| access.statement < it.body.start);
+    let end = all.partition_point(|access| access.statement < it.body.end);
+    all.get(start..end).unwrap_or_default()
+}
+
+fn is_written(cx: &UnitCx<'_>, body: &[Access], tested: &Object) -> bool {
+    body.iter().any(|access| {
         let written = cx.model.object(access.object);
         let same_place = written.footprint.overlaps(&tested.footprint);
         let maybe = (!written.is_fixed() || !tested.is_fixed()) && written.footprint.area == tested.footprint.area;
-        (access.mode.writes() || matches!(access.mode, Mode::Drive(_)))
-            && it.body.contains(&access.statement)
-            && (same_place || maybe || written.class == Class::Indirect)
+        let writes = access.mode.writes() || matches!(access.mode, Mode::Drive(_));
+        writes && (same_place || maybe || written.class == Class::Indirect)
     })
 }

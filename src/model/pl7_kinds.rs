@@ -190,18 +190,17 @@ fn join(a: Kind, b: Kind) -> Kind {
         return Kind::Bit;
     }
     let is_float = a.is_float() && b.is_float();
-    let is_integer = a.is_integer() && b.is_integer();
-    if !is_float && !is_integer {
+    if !(is_float || a.is_integer() && b.is_integer()) {
         return Kind::Unknown;
     }
+    // An operation with a double word is done in double words (PL7:4100-4114).
     match (a.is_table() || b.is_table(), is_float) {
         (true, true) => Kind::FloatTable,
         (true, false) => Kind::IntegerTable,
         (false, true) => Kind::Float,
-        // An operation with a double word is done in double words, and so is one between two constants (PL7:4100-4114).
-        (false, false) if a == Kind::Double || b == Kind::Double => Kind::Double,
-        (false, false) if a == Kind::Word || b == Kind::Word => Kind::Word,
-        (false, false) => Kind::Integer,
+        (false, false) => {
+            [Kind::Double, Kind::Word].into_iter().find(|it| [a, b].contains(it)).unwrap_or(Kind::Integer)
+        }
     }
 }
 

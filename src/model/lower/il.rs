@@ -30,6 +30,7 @@ pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
         test: None,
         parentheses: Vec::new(),
         inside: Vec::new(),
+        stack_inside: None,
         stack: Vec::new(),
         mismatches: Vec::new(),
         block: None,
@@ -82,6 +83,8 @@ struct Lowering {
     /// What stands inside the outermost parenthesis and must not. Reported when it is closed: in one that is not, only
     /// the missing `)` is wrong.
     inside: Vec<Oddity>,
+    /// The first of them that uses the stack.
+    stack_inside: Option<usize>,
     stack: Vec<(ExprId, TextRange)>,
     /// Jumps that leave values on the stack, with the number of them that were there. Of values that stay there to the
     /// end of the sentence, only that is reported.
@@ -124,6 +127,7 @@ impl Lowering {
         self.result = Some(self.pl7.b.exprs().opaque());
         self.parentheses.clear();
         self.inside.clear();
+        self.stack_inside = None;
         self.stack.clear();
         self.mismatches.clear();
     }
@@ -131,9 +135,11 @@ impl Lowering {
     fn end_of_sentence(&mut self) {
         let unclosed = std::mem::take(&mut self.parentheses);
         let inside = std::mem::take(&mut self.inside);
+        self.stack_inside = None;
         for it in &unclosed {
             let oddity = self.pl7.b.oddity(OddityKind::UnclosedParenthesis, it.range, "(");
-            if let Some(action) = inside.iter().find(|inner| inner.range.start() >= it.range.end()) {
+            let first = inside.partition_point(|inner| inner.range.start() < it.range.end());
+            if let Some(action) = inside.get(first) {
                 oddity.related.push((action.range, "this must not stand inside"));
             }
         }
@@ -449,6 +455,7 @@ impl Lowering {
         };
         if self.parentheses.is_empty() {
             self.pl7.b.model.oddities.append(&mut self.inside);
+            self.stack_inside = None;
         }
         let inner = self.result();
         // The modifier behind the parenthesis belongs to the first operand, not to the whole.
@@ -461,9 +468,13 @@ impl Lowering {
     }
 
     fn stack_instruction(&mut self, op: IlOp, range: TextRange, text: &str) {
-        match self.inside.iter_mut().find(|it| it.kind == OddityKind::StackInParentheses) {
+        match self.stack_inside.and_then(|it| self.inside.get_mut(it)) {
             Some(first) => first.related.push((range, "and here")),
-            None => self.in_parentheses(OddityKind::StackInParentheses, range, text),
+            None if self.parentheses.is_empty() => {}
+            None => {
+                self.stack_inside = Some(self.inside.len());
+                self.in_parentheses(OddityKind::StackInParentheses, range, text);
+            }
         }
         if op == IlOp::Mps {
             let result = self.result();
