@@ -34,13 +34,12 @@ pub fn together(exprs: &Exprs, conditions: &[ExprId]) -> Verdict {
     if conjuncts.contains(&Exprs::FALSE) {
         return Verdict::Never;
     }
-    for (at, &a) in conjuncts.iter().enumerate() {
-        if conjuncts[..at].iter().any(|&b| exprs.are_complements(a, b)) {
-            return Verdict::Never;
-        }
-    }
     conjuncts.sort_unstable();
     conjuncts.dedup();
+    let opposed = |&it: &ExprId| exprs.find_complement(it).is_some_and(|it| conjuncts.binary_search(&it).is_ok());
+    if conjuncts.iter().any(opposed) {
+        return Verdict::Never;
+    }
     conjuncts.retain(|&it| it != Exprs::TRUE);
     if conjuncts.is_empty() {
         return Verdict::Possible;

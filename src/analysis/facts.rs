@@ -102,7 +102,7 @@ pub struct UnitFacts {
 const MAX_COMPARED: usize = 48;
 
 /// The writes of one object in a unit are compared this many times; what is left counts as different places.
-const MAX_COMPARISONS: u32 = 2000;
+const MAX_COMPARISONS: u32 = 1000;
 
 impl UnitFacts {
     pub fn new(model: &UnitModel) -> Self {

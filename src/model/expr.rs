@@ -215,6 +215,16 @@ impl Exprs {
         }
     }
 
+    /// The negation of an expression by its form, where the unit has it.
+    pub fn find_complement(&self, a: ExprId) -> Option<ExprId> {
+        match *self.get(a) {
+            Expr::Bool(value) => Some(Self::bool(!value)),
+            Expr::Not(inner) => Some(inner),
+            Expr::Compare(op, x, y) => self.ids.get(&Expr::Compare(op.negated(), x, y)).copied(),
+            _ => self.ids.get(&Expr::Not(a)).copied(),
+        }
+    }
+
     pub fn and(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == Self::FALSE || b == Self::FALSE || self.are_complements(a, b) {
             return Self::FALSE;
