@@ -123,7 +123,7 @@ pub fn tree<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Parse {
 /// What the unit's code does. `no_eq`: it holds ranges.
 #[salsa::tracked(no_eq)]
 pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitModel {
-    lower::lower(&tree(db, unit).syntax(), unit.entity(db).clone(), unit.language(db))
+    lower::lower(&tree(db, unit).syntax(), unit.text(db), unit.entity(db).clone(), unit.language(db))
 }
 
 /// Firewall: what the unit tells its program, without places.

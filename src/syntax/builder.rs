@@ -3,14 +3,13 @@
 //! rowan's own `NodeCache` spends most of its time waiting for memory in its intern table; a cache that stays in the
 //! processor's own and forgets on collision builds the same tree in two thirds of the time.
 
-use std::cell::RefCell;
 use std::hash::Hasher as _;
 
 use rowan::{GreenNode, GreenToken, NodeOrToken};
 
 use super::kind::SyntaxKind;
 
-const SLOTS: usize = 4096;
+const MOST_SLOTS: usize = 4096;
 
 /// Longer tokens (comments, strings) hardly ever repeat.
 const LONGEST_CACHED: usize = 24;
@@ -21,16 +20,12 @@ pub(super) struct TreeBuilder {
     children: Vec<NodeOrToken<GreenNode, GreenToken>>,
 }
 
-thread_local! {
-    /// The cache outlives the tree: units are small, and the next one has the same tokens.
-    static CACHE: RefCell<Vec<Option<GreenToken>>> = const { RefCell::new(Vec::new()) };
-}
-
 impl TreeBuilder {
-    pub(super) fn new() -> Self {
-        let mut slots = CACHE.take();
-        slots.resize(SLOTS, None);
-        Self { slots, parents: Vec::new(), children: Vec::new() }
+    /// `len`: bytes of the text. A cache of its own for each tree keeps its tokens together in memory; a small text
+    /// needs few.
+    pub(super) fn new(len: usize) -> Self {
+        let slots = (len / 8).next_power_of_two().clamp(64, MOST_SLOTS);
+        Self { slots: vec![None; slots], parents: Vec::new(), children: Vec::new() }
     }
 
     pub(super) fn start_node(&mut self, kind: SyntaxKind) {
@@ -53,7 +48,8 @@ impl TreeBuilder {
         hasher.write(text.as_bytes());
         hasher.write_u16(raw.0);
         // The high bits of FxHash are the mixed ones.
-        let slot = &mut self.slots[(hasher.finish() >> 40) as usize % SLOTS];
+        let slot = (hasher.finish() >> 40) as usize & (self.slots.len() - 1);
+        let slot = &mut self.slots[slot];
         let token = match slot {
             Some(it) if it.kind() == raw && it.text() == text => it.clone(),
             _ => slot.insert(GreenToken::new(raw, text)).clone(),
@@ -66,7 +62,6 @@ impl TreeBuilder {
         while !self.parents.is_empty() {
             self.finish_node();
         }
-        CACHE.set(std::mem::take(&mut self.slots));
         match self.children.pop() {
             Some(NodeOrToken::Node(node)) if self.children.is_empty() => node,
             last => {

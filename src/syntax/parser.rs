@@ -249,8 +249,13 @@ impl<'t> Parser<'t> {
 
     /// Builds the tree under one [`SyntaxKind::Root`].
     pub fn finish(mut self) -> Parse {
-        let mut cursor =
-            Cursor { text: self.text, tokens: self.tokens, index: 0, offset: 0, builder: TreeBuilder::new() };
+        let mut cursor = Cursor {
+            text: self.text,
+            tokens: self.tokens,
+            index: 0,
+            offset: 0,
+            builder: TreeBuilder::new(self.text.len()),
+        };
         cursor.builder.start_node(SyntaxKind::Root);
         let mut wrappers = Vec::new();
         let mut open = 0_u32;

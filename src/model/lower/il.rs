@@ -19,7 +19,7 @@ use crate::syntax::pl7::instructions::{self, IlOp};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
-pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
+pub(super) fn lower(root: &SyntaxNode, text: &str, entity: Entity) -> UnitModel {
     // A receptivity is a list of tests alone (PL7:4713-4749).
     let tests_only = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
         || is_bare_receptivity(root);
@@ -36,7 +36,7 @@ pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
         block: None,
         forgotten: false,
     };
-    lowering.pl7.b.set_back_targets(pl7::back_targets(root));
+    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
     if let Some(root) = ast::Root::cast(root.clone()) {
         for sentence in root.sentences() {
             lowering.sentence(&sentence);
@@ -738,7 +738,7 @@ mod tests {
 
     fn part(text: &str, part: Part) -> UnitModel {
         let parse = crate::syntax::pl7::parse_il(text);
-        lower(&parse.syntax(), Entity::Pl7 { task: Task::Mast, section: None, part })
+        lower(&parse.syntax(), text, Entity::Pl7 { task: Task::Mast, section: None, part })
     }
 
     fn model(text: &str) -> UnitModel {

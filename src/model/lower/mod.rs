@@ -13,12 +13,12 @@ use super::entity::Entity;
 use super::unit::Pin;
 use crate::syntax::{Language, SyntaxNode};
 
-/// What the code of a unit does. Total: what is not understood leaves no statement.
-pub fn lower(root: &SyntaxNode, entity: Entity, language: Language) -> UnitModel {
+/// What the code of a unit does. `text` is the tree's text. Total: what is not understood leaves no statement.
+pub fn lower(root: &SyntaxNode, text: &str, entity: Entity, language: Language) -> UnitModel {
     match language {
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
-        Language::Pl7Il => il::lower(root, entity),
-        Language::Pl7St => st::lower(root, entity),
+        Language::Pl7Il => il::lower(root, text, entity),
+        Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
     }
 }

@@ -484,10 +484,14 @@ impl Pl7 {
 }
 
 /// Labels that a jump below them goes to, for both languages.
-pub(super) fn back_targets(root: &SyntaxNode) -> rustc_hash::FxHashSet<SmolStr> {
+pub(super) fn back_targets(root: &SyntaxNode, text: &str) -> rustc_hash::FxHashSet<SmolStr> {
     use crate::syntax::SyntaxKind;
     let mut labels = rustc_hash::FxHashSet::default();
     let mut back = rustc_hash::FxHashSet::default();
+    // Most sections have no label at all.
+    if !text.contains("%L") && !text.contains("%l") {
+        return back;
+    }
     for token in root.descendants_with_tokens().filter_map(rowan::NodeOrToken::into_token) {
         if token.kind() != SyntaxKind::LabelAddress {
             continue;

@@ -13,9 +13,9 @@ use crate::model::unit::{DeadCause, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
 use crate::syntax::{Language, SyntaxNode};
 
-pub(super) fn lower(root: &SyntaxNode, entity: Entity) -> UnitModel {
+pub(super) fn lower(root: &SyntaxNode, text: &str, entity: Entity) -> UnitModel {
     let mut lowering = Lowering { pl7: Pl7::new(root, entity, Language::Pl7St) };
-    lowering.pl7.b.set_back_targets(pl7::back_targets(root));
+    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
     if let Some(root) = ast::Root::cast(root.clone()) {
         for sentence in root.sentences() {
             lowering.pl7.b.next_network();
@@ -210,7 +210,7 @@ mod tests {
     fn model(text: &str) -> UnitModel {
         let parse = crate::syntax::pl7::parse_st(text);
         assert_eq!(parse.errors(), [], "{text}");
-        lower(&parse.syntax(), Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main })
+        lower(&parse.syntax(), text, Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main })
     }
 
     /// What each statement does, with the path to it.
