@@ -8,7 +8,7 @@ mod generator;
 use std::cell::LazyCell;
 use std::hint::black_box;
 
-use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group};
 use plclint::db::{self, Input, RootDatabase};
 use plclint::lint::settings::Settings;
 use plclint::source::detect::{Detected, Dialect};
@@ -127,4 +127,18 @@ fn edit(criterion: &mut Criterion) {
 }
 
 criterion_group!(benches, split, parse, edit, check);
-criterion_main!(benches);
+fn main() {
+    // Writes the generated programs instead, to time the command itself on them.
+    if let Some(folder) = std::env::var_os("PLCLINT_BENCH_WRITE") {
+        for (size, bytes) in SIZES {
+            for Text { name, text, .. } in texts(bytes) {
+                let extension = if name == "step7" { "awl" } else { "st" };
+                let file = std::path::Path::new(&folder).join(format!("{}.{extension}", size.replace(' ', "")));
+                std::fs::write(file, text.as_str()).expect("the folder can be written to");
+            }
+        }
+        return;
+    }
+    benches();
+    Criterion::default().configure_from_args().final_summary();
+}
