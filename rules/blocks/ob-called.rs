@@ -11,7 +11,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let by_number = matches!(name, BlockName::Number(BlockKind::Ob, _));
         let by_target = call.target.is_some_and(|it| cx.program.entity(it).block_kind() == Some(BlockKind::Ob));
         if by_number || by_target {
-            sink.report(call.site(), format!("`{}` is an organization block, which only the system calls", call.it.text));
+            sink.report(
+                call.site(),
+                format!("`{}` is an organization block, which only the system calls", call.it.text),
+            );
         }
     }
 }

@@ -15,7 +15,12 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         let is_place = cx.model.objects.iter().any(|it| it.text == oddity.text);
         if before.is_some() && is_place && cx.text_of(oddity.range).starts_with(['L', 'l']) {
             let mnemonic = TextRange::at(oddity.range.start(), TextSize::new(1));
-            finding.replace(format!("Write `T` to store the value in `{}`", oddity.text), Applicability::Unsafe, mnemonic, "T");
+            finding.replace(
+                format!("Write `T` to store the value in `{}`", oddity.text),
+                Applicability::Unsafe,
+                mnemonic,
+                "T",
+            );
         }
     }
 }

@@ -10,8 +10,11 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         let test = cx.text_of(oddity.range);
         let first = test.split([';', '\n']).next().unwrap_or_default();
         let first: Vec<&str> = first.split_whitespace().collect();
-        sink.report(oddity.range, format!("nothing uses the result of the test that starts with `{}`", first.join(" ")))
-            .label("this result is lost")
-            .related_all(oddity.related.iter().map(|&(place, part)| (place, part.to_owned())));
+        sink.report(
+            oddity.range,
+            format!("nothing uses the result of the test that starts with `{}`", first.join(" ")),
+        )
+        .label("this result is lost")
+        .related_all(oddity.related.iter().map(|&(place, part)| (place, part.to_owned())));
     }
 }

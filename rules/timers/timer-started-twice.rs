@@ -7,8 +7,7 @@ use crate::lint::{ProgramCx, Sink};
 use crate::model::unit::Pin;
 use crate::syntax::Language;
 
-const PINS: [Pin; 7] =
-    [Pin::Start, Pin::Preset, Pin::Up, Pin::Down, Pin::Store, Pin::Retrieve, Pin::Advance];
+const PINS: [Pin; 7] = [Pin::Start, Pin::Preset, Pin::Up, Pin::Down, Pin::Store, Pin::Retrieve, Pin::Advance];
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for uses in cx.program.objects.iter().filter(|it| it.object.is_fixed()) {

@@ -78,7 +78,11 @@ impl Hidden {
             move |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset))
         };
         let addressed = |missing: Mode| {
-            cx.program.objects.iter().filter(|it| by_address(it)).any(|it| it.with_mode(gives(missing)).next().is_some())
+            cx.program
+                .objects
+                .iter()
+                .filter(|it| by_address(it))
+                .any(|it| it.with_mode(gives(missing)).next().is_some())
         };
         Self {
             by_symbol: [Mode::Set, Mode::Reset].map(|it| cx.program.has_unresolved(gives(it))),
