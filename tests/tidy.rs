@@ -147,7 +147,7 @@ fn rules_cite_their_sources() {
             let known = ["PL7:", "PL72:", "GRF:", "S7:"].iter().any(|it| source.starts_with(it));
             let lines = source.split_once(':').map(|it| it.1).unwrap_or_default();
             let numbers = lines.split('-').all(|it| it.parse::<u32>().is_ok());
-            assert!(known && numbers || *source == "product.md" || *source == "catalogue", "{}: `{source}`", rule.name);
+            assert!(known && numbers || *source == "plclint", "{}: `{source}`", rule.name);
         }
     }
 }

@@ -137,7 +137,9 @@ fn descriptor(rule: &'static Rule) -> ReportingDescriptor {
         Severity::Warning | Severity::Advice => "high",
     };
     let mut tags = vec![rule.group.to_owned()];
-    tags.extend(rule.dialects.iter().filter(|&&it| it != "all").map(|it| (*it).to_owned()));
+    // A tag stands once: the groups `il` and `st` are named after their dialects.
+    let dialects = rule.dialects.iter().filter(|&&it| it != "all" && it != rule.group);
+    tags.extend(dialects.map(|it| (*it).to_owned()));
     let properties = PropertyBag::builder()
         .tags(tags)
         .additional_properties(BTreeMap::from([
