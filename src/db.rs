@@ -365,7 +365,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         .collect();
     let leftovers =
         suppressions.leftovers(crate::lint::rules(), |rule| selection.severity(rule, rule.severity).is_some());
-    let cx = FileCx { text: file.text(db), leftovers: &leftovers };
+    let cx = FileCx { leftovers: &leftovers };
     let ran = run_rules(settings, |rule, findings| match rule.check {
         Check::File(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
         Check::Unit(_) | Check::Program(_) => {}

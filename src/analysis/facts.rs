@@ -10,7 +10,7 @@ use crate::model::UnitModel;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
-use crate::model::unit::{Access, Call, Callee, Mode, Pin, Section, StatementKind};
+use crate::model::unit::{Access, Call, Callee, Mode, Section, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -404,20 +404,13 @@ pub fn is_shared(object: &Object) -> bool {
     )
 }
 
-/// The pin that a use drives.
-pub fn pin(it: &Use) -> Option<Pin> {
-    match it.mode {
-        Mode::Drive(pin) => Some(pin),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::fmt::Write as _;
 
     use super::*;
     use crate::model::lower;
+    use crate::model::unit::Pin;
     use crate::syntax::{self, Mnemonics};
 
     fn facts(text: &str) -> UnitFacts {

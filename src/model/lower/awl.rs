@@ -22,7 +22,7 @@ use crate::model::unit::{
     StatementKind,
 };
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Relation, Shift};
+use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};
 use crate::syntax::{Language, Mnemonics, SyntaxKind, SyntaxNode};
 use crate::target;
 
@@ -678,18 +678,14 @@ impl Machine {
     /// Reports an instruction that needs both accumulators where the block has not filled them.
     fn want_two(&mut self, range: TextRange, instr: &ast::Instr) {
         let missing = self.accumulators.iter().filter(|it| it.entry).count();
-        if missing > 0 && self.b.is_reachable() && self.closed_or_listing_start() {
+        // A listing may show the middle of a block; only a block's start is really one.
+        if missing > 0 && self.b.is_reachable() && self.closed {
             let loaded = 2 - index(missing);
             self.b.oddity(OddityKind::MissingOperand(loaded), range, mnemonic_text(instr));
             for accumulator in &mut self.accumulators {
                 accumulator.entry = false;
             }
         }
-    }
-
-    /// A listing may show the middle of a block; only a block's start is really one.
-    fn closed_or_listing_start(&self) -> bool {
-        self.closed
     }
 
     fn result(&mut self, value: ExprId) {
@@ -1054,7 +1050,7 @@ impl Machine {
                 self.fresh = true;
                 self.overwrite(value, range);
             }
-            Op::Arithmetic(op, ty) => {
+            Op::Arithmetic(op, _) => {
                 self.ignores_rlo(range, instr);
                 let (left, right) = self.two_operands(range, instr);
                 let operator = match op {
@@ -1065,7 +1061,6 @@ impl Machine {
                 };
                 let value = self.b.exprs().binary(operator, left, right);
                 self.result(value);
-                let _: NumberType = ty;
             }
             Op::Modulo => {
                 self.ignores_rlo(range, instr);

@@ -733,7 +733,7 @@ fn describe(ty: Type) -> &'static str {
 mod tests {
     use super::*;
     use crate::model::entity::Task;
-    use crate::model::expr::Expr;
+    use crate::model::lower::testing::show;
     use crate::model::unit::StatementKind;
 
     fn part(text: &str, part: Part) -> UnitModel {
@@ -776,24 +776,6 @@ mod tests {
             lines.push(if path == "true" { what } else { format!("{path}: {what}") });
         }
         lines
-    }
-
-    fn show(model: &UnitModel, id: ExprId) -> String {
-        match model.exprs.get(id) {
-            Expr::Bool(value) => value.to_string(),
-            Expr::Int(value) => value.to_string(),
-            Expr::Read { object, .. } => model.object(*object).text.to_string(),
-            Expr::Edge { object, rising, .. } => {
-                format!("{}{}", if *rising { "^" } else { "v" }, model.object(*object).text)
-            }
-            Expr::Not(a) => format!("!{}", show(model, *a)),
-            Expr::And(a, b) => format!("({} & {})", show(model, *a), show(model, *b)),
-            Expr::Or(a, b) => format!("({} | {})", show(model, *a), show(model, *b)),
-            Expr::Xor(a, b) => format!("({} ^ {})", show(model, *a), show(model, *b)),
-            Expr::Compare(op, a, b) => format!("({} {} {})", show(model, *a), op.as_str(), show(model, *b)),
-            Expr::Binary(op, a, b) => format!("{op:?}({}, {})", show(model, *a), show(model, *b)),
-            _ => "?".to_owned(),
-        }
     }
 
     #[test]

@@ -22,3 +22,35 @@ pub fn lower(root: &SyntaxNode, text: &str, entity: Entity, language: Language) 
         Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
     }
 }
+
+#[cfg(test)]
+mod testing {
+    use crate::model::UnitModel;
+    use crate::model::expr::{Expr, ExprId};
+
+    /// An expression, written out.
+    pub(super) fn show(model: &UnitModel, id: ExprId) -> String {
+        match model.exprs.get(id) {
+            Expr::Bool(value) => value.to_string(),
+            Expr::Int(value) => value.to_string(),
+            Expr::Float(bits) => format!("{:?}", f64::from_bits(*bits)),
+            Expr::Text(text) => text.to_string(),
+            Expr::Read { object, .. } => model.object(*object).text.to_string(),
+            Expr::Edge { object, rising, .. } => {
+                format!("{}{}", if *rising { "^" } else { "v" }, model.object(*object).text)
+            }
+            Expr::Not(a) => format!("!{}", show(model, *a)),
+            Expr::And(a, b) => format!("({} & {})", show(model, *a), show(model, *b)),
+            Expr::Or(a, b) => format!("({} | {})", show(model, *a), show(model, *b)),
+            Expr::Xor(a, b) => format!("({} ^ {})", show(model, *a), show(model, *b)),
+            Expr::Compare(op, a, b) => format!("({} {} {})", show(model, *a), op.as_str(), show(model, *b)),
+            Expr::Binary(op, a, b) => format!("{op:?}({}, {})", show(model, *a), show(model, *b)),
+            Expr::Negate(a) => format!("-{}", show(model, *a)),
+            Expr::Call(name, list) => {
+                let list: Vec<String> = list.iter().map(|it| show(model, *it)).collect();
+                format!("{name}({})", list.join(", "))
+            }
+            Expr::Opaque(_) => "?".to_owned(),
+        }
+    }
+}
