@@ -30,7 +30,7 @@ use crate::source::detect::{self, Detected, Dialect, FileHint};
 use crate::source::entity_from_address;
 use crate::source::line_index::LineIndex;
 use crate::source::split::{self, SplitHint};
-use crate::syntax::{self, Language, Parse, SyntaxKind};
+use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
 use crate::target::Target;
 
 /// A file as it was read.
@@ -123,7 +123,7 @@ pub fn tree<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Parse {
 /// What the unit's code does. `no_eq`: it holds ranges.
 #[salsa::tracked(no_eq)]
 pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitModel {
-    lower::lower(&tree(db, unit).syntax(), unit.text(db), unit.entity(db).clone(), unit.language(db))
+    lower::lower(tree(db, unit).syntax(), unit.text(db), unit.entity(db).clone(), unit.language(db))
 }
 
 /// Firewall: what the unit tells its program, without places.
@@ -132,12 +132,12 @@ pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitFacts {
     let mut facts = UnitFacts::new(model(db, unit));
     let tree = tree(db, unit);
     facts.has_gaps |=
-        unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, &tree.syntax());
+        unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
     facts
 }
 
 /// Whether the unit is PL7 text that does not say what it is: a listing shown in a document, part of something unread.
-fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: &syntax::SyntaxNode) -> bool {
+fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: syntax::SyntaxNode<'_>) -> bool {
     let file = unit.file(db);
     matches!(file.detected(db), Detected::Pasted(_))
         && *unit.entity(db) != Entity::Container
@@ -411,19 +411,27 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
     let mut comments = Vec::new();
     let mut code = Code::default();
     for &(unit, offset) in layout(db, file) {
-        for element in tree(db, unit).syntax().descendants_with_tokens() {
-            let range = element.text_range() + TextSize::new(offset);
-            match element.kind() {
+        let place = |it: TextRange| it + TextSize::new(offset);
+        for event in tree(db, unit).syntax().walk() {
+            let token = match event {
+                WalkEvent::Enter(it) if it.kind() == SyntaxKind::Sentence => {
+                    let range = place(it.text_range());
+                    code.statements.push((line(range.start()), line(range.end())));
+                    continue;
+                }
+                WalkEvent::Enter(_) | WalkEvent::Leave(_) => continue,
+                WalkEvent::Token(it) => it,
+            };
+            let range = place(token.text_range());
+            match token.kind() {
                 SyntaxKind::Whitespace | SyntaxKind::Newline => {}
                 SyntaxKind::Comment | SyntaxKind::UnclosedComment => comments.push(range),
-                SyntaxKind::Sentence => code.statements.push((line(range.start()), line(range.end()))),
-                _ if element.as_token().is_some() => {
+                _ => {
                     let at = line(range.start());
                     if code.lines.last().is_none_or(|&it| it < at) {
                         code.lines.push(at);
                     }
                 }
-                _ => {}
             }
         }
     }

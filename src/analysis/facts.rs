@@ -417,7 +417,7 @@ mod tests {
         let language = Language::Awl(Mnemonics::German);
         let parse = syntax::parse(language, text);
         assert_eq!(parse.errors(), [], "{text}");
-        UnitFacts::new(&lower::lower(&parse.syntax(), text, Entity::Listing, language))
+        UnitFacts::new(&lower::lower(parse.syntax(), text, Entity::Listing, language))
     }
 
     fn starts(text: &str) -> Vec<u32> {

@@ -10,8 +10,11 @@ use super::suppress::Leftover;
 use crate::analysis::program::ProgramIndex;
 use crate::model::UnitModel;
 use crate::model::pl7_kinds::Kinds;
-use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
+use crate::syntax::{Parse, SyntaxKind, SyntaxNode, WalkEvent};
 use crate::target::Target;
+
+/// Nodes with their parents.
+type NodesByKind<'a> = FxHashMap<SyntaxKind, Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>>;
 
 /// One unit: its model, its tree, its text. Places are ranges relative to the unit.
 pub struct UnitCx<'a> {
@@ -20,8 +23,8 @@ pub struct UnitCx<'a> {
     pub text: &'a str,
     pub settings: &'a Settings,
     pub target: &'a Target,
-    nodes: OnceCell<FxHashMap<SyntaxKind, Vec<SyntaxNode>>>,
-    kinds: OnceCell<Kinds>,
+    nodes: OnceCell<NodesByKind<'a>>,
+    kinds: OnceCell<Kinds<'a>>,
 }
 
 impl<'a> UnitCx<'a> {
@@ -37,10 +40,26 @@ impl<'a> UnitCx<'a> {
 
     /// Every node of a kind, in the order of the text; none for objects, names, literals and instructions. The tree is
     /// walked once for all rules.
-    pub fn nodes(&self, kind: SyntaxKind) -> &[SyntaxNode] {
+    pub fn nodes(&self, kind: SyntaxKind) -> impl Iterator<Item = SyntaxNode<'a>> {
+        self.nodes_in(kind).iter().map(|it| it.1)
+    }
+
+    /// As [`Self::nodes`], each behind the node that it is a child of.
+    pub fn nodes_in(&self, kind: SyntaxKind) -> &[(SyntaxNode<'a>, SyntaxNode<'a>)] {
         let nodes = self.nodes.get_or_init(|| {
-            let mut nodes: FxHashMap<SyntaxKind, Vec<SyntaxNode>> = FxHashMap::default();
-            for node in self.parse.syntax().descendants() {
+            let mut nodes = NodesByKind::default();
+            let mut open = Vec::new();
+            for event in self.parse.syntax().walk() {
+                let node = match event {
+                    WalkEvent::Enter(node) => node,
+                    WalkEvent::Leave(_) => {
+                        open.pop();
+                        continue;
+                    }
+                    WalkEvent::Token(_) => continue,
+                };
+                let parent = open.last().copied();
+                open.push(node);
                 let kind = node.kind();
                 // Leaves are by far the most, and no rule asks for all of them.
                 if !matches!(
@@ -51,7 +70,7 @@ impl<'a> UnitCx<'a> {
                         | SyntaxKind::IlInstr
                         | SyntaxKind::Instr
                 ) {
-                    nodes.entry(kind).or_default().push(node);
+                    nodes.entry(kind).or_default().extend(parent.map(|it| (it, node)));
                 }
             }
             nodes
@@ -61,12 +80,12 @@ impl<'a> UnitCx<'a> {
 
     /// Whether the author left parts of the unit out (`...`), as listings in documents do.
     pub fn leaves_out(&self) -> bool {
-        self.parse.syntax().descendants_with_tokens().any(|it| it.kind() == SyntaxKind::Elision)
+        self.parse.syntax().descendant_tokens().any(|it| it.kind() == SyntaxKind::Elision)
     }
 
     /// Kinds of values of PL7 expressions. The tree is walked once for all rules.
-    pub fn kinds(&self) -> &Kinds {
-        self.kinds.get_or_init(|| Kinds::new(&self.parse.syntax()))
+    pub fn kinds(&self) -> &Kinds<'a> {
+        self.kinds.get_or_init(|| Kinds::new(self.parse.syntax()))
     }
 
     /// Text of a place; empty when the range is not one.

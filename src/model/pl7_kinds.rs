@@ -1,13 +1,13 @@
 //! Kinds of values of PL7 expressions, as far as addresses, constants and the table of functions tell.
 
-use rowan::ast::AstNode as _;
+use crate::syntax::AstNode as _;
 use rustc_hash::FxHashMap;
 
 use super::literal::{self, Value};
 use super::object::{self, Type};
 use crate::syntax::pl7::ast::{BinOp, Expr, UnaryOp};
 use crate::syntax::pl7::functions;
-use crate::syntax::{SyntaxKind, SyntaxNode};
+use crate::syntax::{SyntaxKind, SyntaxNode, WalkEvent};
 
 /// What kind of value an expression has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -103,34 +103,34 @@ impl Kind {
 
 /// The kind of every expression of a tree.
 #[derive(Debug, Default)]
-pub struct Kinds {
-    kinds: FxHashMap<SyntaxNode, Kind>,
+pub struct Kinds<'t> {
+    kinds: FxHashMap<SyntaxNode<'t>, Kind>,
 }
 
-impl Kinds {
+impl<'t> Kinds<'t> {
     /// One walk over the tree, operands before what they are operands of.
-    pub fn new(root: &SyntaxNode) -> Self {
+    pub fn new(root: SyntaxNode<'t>) -> Self {
         let mut it = Self::default();
-        for event in root.preorder() {
-            if let rowan::WalkEvent::Leave(node) = event
-                && let Some(expr) = Expr::cast(node.clone())
+        for event in root.walk() {
+            if let WalkEvent::Leave(node) = event
+                && let Some(expr) = Expr::cast(node)
             {
-                let kind = it.compute(&expr);
+                let kind = it.compute(expr);
                 it.kinds.insert(node, kind);
             }
         }
         it
     }
 
-    pub fn of(&self, expr: &Expr) -> Kind {
-        self.kinds.get(expr.syntax()).copied().unwrap_or(Kind::Unknown)
+    pub fn of(&self, expr: Expr<'t>) -> Kind {
+        self.kinds.get(&expr.syntax()).copied().unwrap_or(Kind::Unknown)
     }
 
-    fn optional(&self, expr: Option<Expr>) -> Kind {
-        expr.map_or(Kind::Unknown, |it| self.of(&it))
+    fn optional(&self, expr: Option<Expr<'t>>) -> Kind {
+        expr.map_or(Kind::Unknown, |it| self.of(it))
     }
 
-    fn compute(&self, expr: &Expr) -> Kind {
+    fn compute(&self, expr: Expr<'t>) -> Kind {
         match expr {
             Expr::Literal(it) => it.token().map_or(Kind::Unknown, |token| match token.kind() {
                 SyntaxKind::CharString => Kind::Text,
@@ -164,7 +164,7 @@ impl Kinds {
                 match function.result {
                     // The result is of the operand's kind: `SQRT`, `ABS`, `SHL` (PL7:3603-3642).
                     Some(functions::Kind::Number | functions::Kind::Integer) => {
-                        match it.arguments().into_iter().next().flatten().map(|it| self.of(&it)) {
+                        match it.arguments().into_iter().next().flatten().map(|it| self.of(it)) {
                             Some(kind @ (Kind::Word | Kind::Double | Kind::Integer | Kind::Float)) => kind,
                             Some(Kind::IntegerTable) => Kind::Integer,
                             _ => Kind::Unknown,
@@ -206,8 +206,6 @@ fn join(a: Kind, b: Kind) -> Kind {
 
 #[cfg(test)]
 mod tests {
-    use rowan::ast::support;
-
     use super::*;
     use crate::syntax::pl7::ast;
 
@@ -215,11 +213,11 @@ mod tests {
         let parse = crate::syntax::pl7::parse_st(&format!("! Sym := {value};"));
         assert_eq!(parse.errors(), [], "{value}");
         let root = parse.syntax();
-        let kinds = Kinds::new(&root);
+        let kinds = Kinds::new(root);
         let mut assignments = root.descendants().filter_map(ast::AssignStmt::cast);
         let statement = assignments.next().expect("an assignment");
-        let value: Option<Expr> = support::children(statement.syntax()).nth(1);
-        kinds.of(&value.expect("a value"))
+        let value: Option<Expr> = statement.children().nth(1);
+        kinds.of(value.expect("a value"))
     }
 
     #[test]
