@@ -25,7 +25,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 }
 
 /// One finding for all that should stand in parentheses under one outermost logical operator.
-fn logical_chain(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, whole: BinExpr<'_>) {
+fn logical_chain<'a>(cx: &UnitCx<'a>, sink: &mut Sink<'_, TextRange>, whole: BinExpr<'a>) {
     let mut places: Vec<TextRange> = Vec::new();
     let mut words: Vec<String> = Vec::new();
     let mut stack = vec![whole];
@@ -84,7 +84,7 @@ fn operands(expr: BinExpr<'_>) -> Vec<BinExpr<'_>> {
 
 /// Whether an operand of a logical operator should stand in parentheses: it has another logical operator, or is a
 /// comparison while the other operand is a number.
-fn is_doubtful(cx: &UnitCx<'_>, whole: BinExpr<'_>, op: BinOp, operand: BinExpr<'_>) -> bool {
+fn is_doubtful<'a>(cx: &UnitCx<'a>, whole: BinExpr<'a>, op: BinOp, operand: BinExpr<'_>) -> bool {
     let Some(inner) = operand.op() else { return false };
     if inner.is_logical() {
         return inner != op;

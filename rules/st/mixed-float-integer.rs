@@ -10,6 +10,9 @@ use crate::syntax::pl7::ast::{AssignStmt, BinExpr, CallExpr, CallStmt, Expr};
 use crate::syntax::pl7::functions::Function;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    if !cx.model.has_floats {
+        return;
+    }
     for expr in cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast) {
         pair(cx, sink, expr.lhs(), expr.rhs(), expr.syntax().text_range());
     }
@@ -28,7 +31,13 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 }
 
 /// Two operands that meet.
-fn pair(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, a: Option<Expr>, b: Option<Expr>, place: TextRange) {
+fn pair<'a>(
+    cx: &UnitCx<'a>,
+    sink: &mut Sink<'_, TextRange>,
+    a: Option<Expr<'a>>,
+    b: Option<Expr<'a>>,
+    place: TextRange,
+) {
     let (Some(a), Some(b)) = (a, b) else { return };
     let kinds = [a, b].map(|it| cx.kinds().of(it));
     if !kinds[0].mixes_with(kinds[1]) {
@@ -48,11 +57,11 @@ fn pair(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, a: Option<Expr>, b: Opt
         .related_all([part(&a, kinds[0]), part(&b, kinds[1])]);
 }
 
-fn arguments(
-    cx: &UnitCx<'_>,
+fn arguments<'a>(
+    cx: &UnitCx<'a>,
     sink: &mut Sink<'_, TextRange>,
     function: Option<&'static Function>,
-    given: Vec<Option<Expr>>,
+    given: Vec<Option<Expr<'a>>>,
 ) {
     let Some(function) = function else { return };
     for (position, argument) in given.into_iter().enumerate() {

@@ -10,7 +10,7 @@ use super::suppress::Leftover;
 use crate::analysis::program::ProgramIndex;
 use crate::model::UnitModel;
 use crate::model::pl7_kinds::Kinds;
-use crate::syntax::{Parse, SyntaxKind, SyntaxNode, WalkEvent};
+use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
 use crate::target::Target;
 
 /// Nodes with their parents.
@@ -24,7 +24,7 @@ pub struct UnitCx<'a> {
     pub settings: &'a Settings,
     pub target: &'a Target,
     nodes: OnceCell<NodesByKind<'a>>,
-    kinds: OnceCell<Kinds<'a>>,
+    kinds: Kinds<'a>,
 }
 
 impl<'a> UnitCx<'a> {
@@ -35,7 +35,7 @@ impl<'a> UnitCx<'a> {
         settings: &'a Settings,
         target: &'a Target,
     ) -> Self {
-        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: OnceCell::new() }
+        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: Kinds::default() }
     }
 
     /// Every node of a kind, in the order of the text; none for objects, names, literals and instructions. The tree is
@@ -48,30 +48,31 @@ impl<'a> UnitCx<'a> {
     pub fn nodes_in(&self, kind: SyntaxKind) -> &[(SyntaxNode<'a>, SyntaxNode<'a>)] {
         let nodes = self.nodes.get_or_init(|| {
             let mut nodes = NodesByKind::default();
-            let mut open = Vec::new();
-            for event in self.parse.syntax().walk() {
-                let node = match event {
-                    WalkEvent::Enter(node) => node,
-                    WalkEvent::Leave(_) => {
-                        open.pop();
-                        continue;
-                    }
-                    WalkEvent::Token(_) => continue,
+            let root = self.parse.syntax();
+            let mut open = vec![(root, root.children_with_tokens())];
+            while let Some((parent, children)) = open.last_mut() {
+                let Some(child) = children.next() else {
+                    open.pop();
+                    continue;
                 };
-                let parent = open.last().copied();
-                open.push(node);
+                let Some(node) = child.into_node() else { continue };
                 let kind = node.kind();
                 // Leaves are by far the most, and no rule asks for all of them.
-                if !matches!(
-                    kind,
-                    SyntaxKind::ObjectRef
-                        | SyntaxKind::NameRef
-                        | SyntaxKind::Literal
-                        | SyntaxKind::IlInstr
-                        | SyntaxKind::Instr
-                ) {
-                    nodes.entry(kind).or_default().extend(parent.map(|it| (it, node)));
+                let is_leaf = match kind {
+                    SyntaxKind::Literal => continue,
+                    SyntaxKind::ObjectRef | SyntaxKind::NameRef => {
+                        if node.children().next().is_none() {
+                            continue;
+                        }
+                        true
+                    }
+                    SyntaxKind::IlInstr | SyntaxKind::Instr => true,
+                    _ => false,
+                };
+                if !is_leaf {
+                    nodes.entry(kind).or_default().push((*parent, node));
                 }
+                open.push((node, node.children_with_tokens()));
             }
             nodes
         });
@@ -83,9 +84,9 @@ impl<'a> UnitCx<'a> {
         self.parse.syntax().descendant_tokens().any(|it| it.kind() == SyntaxKind::Elision)
     }
 
-    /// Kinds of values of PL7 expressions. The tree is walked once for all rules.
+    /// Kinds of values of PL7 expressions.
     pub fn kinds(&self) -> &Kinds<'a> {
-        self.kinds.get_or_init(|| Kinds::new(self.parse.syntax()))
+        &self.kinds
     }
 
     /// Text of a place; empty when the range is not one.

@@ -1,6 +1,8 @@
 //! Kinds of values of PL7 expressions, as far as addresses, constants and the table of functions tell.
 
 use crate::syntax::AstNode as _;
+use std::cell::RefCell;
+
 use rustc_hash::FxHashMap;
 
 use super::literal::{self, Value};
@@ -101,33 +103,37 @@ impl Kind {
     }
 }
 
-/// The kind of every expression of a tree.
+/// Kinds of the expressions of a tree, as they are asked for.
 #[derive(Debug, Default)]
 pub struct Kinds<'t> {
-    kinds: FxHashMap<SyntaxNode<'t>, Kind>,
+    known: RefCell<FxHashMap<SyntaxNode<'t>, Kind>>,
 }
 
 impl<'t> Kinds<'t> {
-    /// One walk over the tree, operands before what they are operands of.
-    pub fn new(root: SyntaxNode<'t>) -> Self {
-        let mut it = Self::default();
-        for event in root.walk() {
+    /// Walks an expression once, operands before what they are operands of.
+    pub fn of(&self, expr: Expr<'t>) -> Kind {
+        if let Some(kind) = self.known(expr) {
+            return kind;
+        }
+        for event in expr.syntax().walk() {
             if let WalkEvent::Leave(node) = event
-                && let Some(expr) = Expr::cast(node)
+                && let Some(inner) = Expr::cast(node)
+                && self.known(inner).is_none()
             {
-                let kind = it.compute(expr);
-                it.kinds.insert(node, kind);
+                let kind = self.compute(inner);
+                self.known.borrow_mut().insert(node, kind);
             }
         }
-        it
+        self.operand(Some(expr))
     }
 
-    pub fn of(&self, expr: Expr<'t>) -> Kind {
-        self.kinds.get(&expr.syntax()).copied().unwrap_or(Kind::Unknown)
+    fn known(&self, expr: Expr<'t>) -> Option<Kind> {
+        self.known.borrow().get(&expr.syntax()).copied()
     }
 
-    fn optional(&self, expr: Option<Expr<'t>>) -> Kind {
-        expr.map_or(Kind::Unknown, |it| self.of(it))
+    /// Kind of an operand, whose turn was before.
+    fn operand(&self, expr: Option<Expr<'t>>) -> Kind {
+        expr.and_then(|it| self.known(it)).unwrap_or(Kind::Unknown)
     }
 
     fn compute(&self, expr: Expr<'t>) -> Kind {
@@ -149,22 +155,22 @@ impl<'t> Kinds<'t> {
                 object.map_or(Kind::Unknown, |it| Kind::of_type(it.ty))
             }
             Expr::Name(_) => Kind::Unknown,
-            Expr::Paren(it) => self.optional(it.expr()),
+            Expr::Paren(it) => self.operand(it.expr()),
             Expr::Unary(it) => match it.op() {
                 Some(UnaryOp::Re | UnaryOp::Fe) => Kind::Bit,
-                _ => self.optional(it.operand()),
+                _ => self.operand(it.operand()),
             },
             Expr::Bin(it) => match it.op() {
                 Some(op) if op.is_comparison() => Kind::Bit,
                 Some(BinOp::Assign) | None => Kind::Unknown,
-                Some(_) => join(self.optional(it.lhs()), self.optional(it.rhs())),
+                Some(_) => join(self.operand(it.lhs()), self.operand(it.rhs())),
             },
             Expr::Call(it) => {
                 let Some(function) = it.function() else { return Kind::Unknown };
                 match function.result {
                     // The result is of the operand's kind: `SQRT`, `ABS`, `SHL` (PL7:3603-3642).
                     Some(functions::Kind::Number | functions::Kind::Integer) => {
-                        match it.arguments().into_iter().next().flatten().map(|it| self.of(it)) {
+                        match it.arguments().into_iter().next().flatten().and_then(|it| self.known(it)) {
                             Some(kind @ (Kind::Word | Kind::Double | Kind::Integer | Kind::Float)) => kind,
                             Some(Kind::IntegerTable) => Kind::Integer,
                             _ => Kind::Unknown,
@@ -213,7 +219,7 @@ mod tests {
         let parse = crate::syntax::pl7::parse_st(&format!("! Sym := {value};"));
         assert_eq!(parse.errors(), [], "{value}");
         let root = parse.syntax();
-        let kinds = Kinds::new(root);
+        let kinds = Kinds::default();
         let mut assignments = root.descendants().filter_map(ast::AssignStmt::cast);
         let statement = assignments.next().expect("an assignment");
         let value: Option<Expr> = statement.children().nth(1);

@@ -12,6 +12,7 @@ use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{Argument, Call, Callee, Constant, DeadCause, Leave, Mode, OddityKind, Pin, StatementKind};
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
+use crate::syntax::pl7::functions::Function;
 use crate::syntax::{Language, SyntaxKind, SyntaxNode, WalkEvent};
 
 /// What kind of value an expression has, as far as it shows.
@@ -83,7 +84,10 @@ impl Pl7 {
             None => object::pl7::parse(&address),
         };
         let id = match parsed {
-            Ok(object) => self.b.object(object),
+            Ok(object) => {
+                self.b.model.has_floats |= matches!(object.ty, Type::Float | Type::FloatTable(_));
+                self.b.object(object)
+            }
             Err(error) => return (self.address_error(error, range, &address), range),
         };
         if is_direct {
@@ -156,7 +160,10 @@ impl Pl7 {
         match literal::parse_pl7(token.text()) {
             Ok(Value::Bool(value)) => (Exprs::bool(value), Kind::Bit),
             Ok(Value::Int { value, .. }) => (self.b.exprs().int(value), Kind::Number),
-            Ok(Value::Real(value)) => (self.b.exprs().float(value), Kind::Number),
+            Ok(Value::Real(value)) => {
+                self.b.model.has_floats = true;
+                (self.b.exprs().float(value), Kind::Number)
+            }
             Ok(Value::Count(value)) => (self.b.exprs().int(i64::from(value)), Kind::Number),
             Ok(value) => {
                 let text = SmolStr::new(token.text());
@@ -273,6 +280,7 @@ impl Pl7 {
 
     fn call_expr(&mut self, it: &ast::CallExpr) -> (ExprId, Kind) {
         let function = it.function();
+        self.b.model.has_floats |= function.is_some_and(Function::has_floats);
         let mut values = Vec::new();
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
@@ -393,6 +401,7 @@ impl Pl7 {
             return;
         }
         let function = it.function();
+        self.b.model.has_floats |= function.is_some_and(Function::has_floats);
         let mut arguments = Vec::new();
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
