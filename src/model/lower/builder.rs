@@ -88,7 +88,7 @@ impl Builder {
             reads_indirectly: false,
             writes_indirectly: false,
             has_gaps: false,
-            has_floats: false,
+            mixes_floats: false,
         };
         Self {
             model,
