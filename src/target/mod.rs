@@ -2,11 +2,15 @@
 //!
 //! **Invariant:** a vendor's number lives here (or on a rule's page), never in a rule's code.
 
+mod count;
 pub mod pl7;
 pub mod step7;
 
 use std::fmt;
 use std::str::FromStr;
+
+use count::Counts;
+pub use count::{Count, Counted, CountedBy, Numbered};
 
 use crate::model::entity::Family;
 
@@ -41,11 +45,14 @@ impl Range {
     }
 }
 
-/// The controller that a program is for, as far as it is known.
+/// The controller that a program is for, as far as it is known, and what the application configures on it.
+///
+/// Of an unknown controller, a figure is the one that holds for every controller of the family: the largest count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Target {
     family: Family,
     controller: Option<Controller>,
+    counts: Counts,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,16 +97,136 @@ fn key(name: &str) -> String {
 
 impl Target {
     /// A controller of the family about which nothing more is known.
-    pub const fn any(family: Family) -> Self {
-        Self { family, controller: None }
+    pub fn any(family: Family) -> Self {
+        Self { family, controller: None, counts: Counts::default() }
     }
 
     fn pl7(processor: &'static pl7::Processor) -> Self {
-        Self { family: Family::Pl7, controller: Some(Controller::Pl7(processor)) }
+        Self { controller: Some(Controller::Pl7(processor)), ..Self::any(Family::Pl7) }
     }
 
     fn step7(cpu: &'static step7::Cpu) -> Self {
-        Self { family: Family::Step7, controller: Some(Controller::Step7(cpu)) }
+        Self { controller: Some(Controller::Step7(cpu)), ..Self::any(Family::Step7) }
+    }
+
+    /// The target with the counts that an application configures, by their key in `[objects]`.
+    pub fn with_counts(self, of: impl Fn(&str) -> Option<u32>) -> Self {
+        let counts = Counts::new(|what| {
+            let key = self.numbered(what)?.key;
+            (!key.is_empty()).then(|| of(key)).flatten()
+        });
+        Self { counts, ..self }
+    }
+
+    /// What controllers of the family count.
+    pub fn all_numbered(&self) -> &'static [Numbered] {
+        match self.family {
+            Family::Pl7 => pl7::NUMBERED,
+            Family::Step7 => step7::NUMBERED,
+        }
+    }
+
+    /// How the family calls what it counts; `None` when it has no such thing.
+    pub fn numbered(&self, what: Counted) -> Option<&'static Numbered> {
+        self.all_numbered().iter().find(|it| it.what == what)
+    }
+
+    /// How many objects of a kind a program may use: the configured number, else the most that the controller, or every
+    /// controller of the family, can have. `None` when the family has no such thing, or when nothing says where it ends.
+    pub fn count(&self, what: Counted) -> Option<Count> {
+        let numbered = self.numbered(what)?;
+        if let Some(value) = self.counts.get(what) {
+            return Some(Count { value, by: CountedBy::Configuration, source: numbered.key });
+        }
+        let (own, largest) = match self.controller {
+            Some(Controller::Pl7(it)) => (it.count(what), pl7::largest_count(what)),
+            Some(Controller::Step7(it)) => (it.count(what), step7::largest_count(what)),
+            None if self.family == Family::Pl7 => (None, pl7::largest_count(what)),
+            None => (None, step7::largest_count(what)),
+        };
+        let name = self.controller();
+        let (limit, by) = match own.zip(name) {
+            Some((limit, name)) => (limit, CountedBy::Controller(name)),
+            None => (largest?, CountedBy::Family),
+        };
+        Some(Count { value: limit.value, by, source: limit.source })
+    }
+
+    /// How many timers of both kinds there may be together, and whose limit it is; `None` where each kind has its own.
+    pub fn all_timers(&self) -> Option<Count> {
+        if self.family != Family::Pl7 {
+            return None;
+        }
+        let (limit, by) = match self.processor() {
+            Some(it) => (it.series.timers(), CountedBy::Controller(it.name)),
+            None => (pl7::TIMERS_PREMIUM, CountedBy::Family),
+        };
+        Some(Count { value: limit.value, by, source: limit.source })
+    }
+
+    /// Numbers of events, those of every controller when it is unknown; `None` where events have no numbers.
+    pub fn events(&self) -> Option<Range> {
+        match self.family {
+            Family::Pl7 => self.processor().and_then(|it| it.events).or(pl7::EVENTS_LARGEST),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Numbers of subroutines that the language has; `None` where they are blocks.
+    pub const fn subroutines(&self) -> Option<Range> {
+        match self.family {
+            Family::Pl7 => Some(pl7::SUBROUTINES),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Number of a subroutine above which no tool takes one.
+    pub const fn last_subroutine(&self) -> Option<Limit> {
+        match self.family {
+            Family::Pl7 => Some(pl7::SUBROUTINE_LAST_IN_EDITOR),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Longest name of a section: what the language allows, and what the program editor takes.
+    pub const fn section_name_length(&self) -> Option<(Limit, Limit)> {
+        match self.family {
+            Family::Pl7 => Some((pl7::SECTION_NAME_LENGTH, pl7::SECTION_NAME_LENGTH_IN_EDITOR)),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Preset of a timer, counter or monostable.
+    pub const fn preset(&self, what: Counted) -> Option<Range> {
+        match (self.family, what) {
+            (Family::Pl7, Counted::Timers | Counted::OldTimers | Counted::Counters | Counted::Monostables) => {
+                Some(pl7::PRESETS)
+            }
+            (Family::Step7, Counted::Counters) => Some(step7::COUNTER_PRESETS),
+            _ => None,
+        }
+    }
+
+    /// Whether an index may be a constant word or an immediate value, as it may on some controller when it is unknown.
+    pub fn has_constant_index(&self) -> bool {
+        self.family == Family::Pl7 && self.processor().is_none_or(|it| it.series.has_constant_index())
+    }
+
+    /// Lines of a rung, the most that any controller has when it is unknown.
+    pub fn ladder_lines(&self) -> Option<Limit> {
+        let series = self.processor().map_or(pl7::Series::Premium, |it| it.series);
+        (self.family == Family::Pl7).then(|| series.ladder_lines())
+    }
+
+    /// What a chart may have at most.
+    pub fn chart(&self) -> Option<pl7::ChartLimits> {
+        let largest = (self.family == Family::Pl7).then_some(pl7::CHART_LARGEST);
+        self.processor().map(|it| it.chart_max).or(largest)
+    }
+
+    /// What one event may exchange; `None` when the controller is unknown: the series count differently.
+    pub fn exchanges(&self) -> Option<pl7::Exchanges> {
+        self.processor().map(|it| it.exchanges)
     }
 
     pub const fn family(&self) -> Family {
@@ -195,11 +322,8 @@ impl Target {
         if self.family != Family::Pl7 {
             return None;
         }
-        let row = pl7::BLOCK_COUNTS.iter().find(|it| it.symbol == symbol)?;
-        Some(match self.processor().map(|it| it.series) {
-            Some(pl7::Series::Micro) => row.micro,
-            Some(pl7::Series::Premium) | None => row.premium,
-        })
+        let what = pl7::BLOCK_COUNTS.iter().find(|it| it.symbol == symbol)?.what;
+        self.processor().map_or_else(|| pl7::largest_count(what), |it| it.count(what))
     }
 }
 
