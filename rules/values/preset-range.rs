@@ -5,24 +5,26 @@ use rowan::TextRange;
 use crate::analysis::counts;
 use crate::lint::{Sink, UnitCx};
 use crate::model::entity::Family;
-use crate::model::expr::{Expr, ExprId};
+use crate::model::expr::Expr;
 use crate::model::literal;
 use crate::model::object::{Class, Object, pl7};
 use crate::model::unit::{Pin, StatementKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let int = |value: ExprId| match *cx.model.exprs.get(value) {
-        Expr::Int(value) => Some(value),
-        _ => None,
-    };
     for statement in &cx.model.statements {
-        let (access, value, is_wrong): (_, _, fn(&UnitCx<'_>, &Object, i64) -> Option<String>) = match statement.kind {
-            StatementKind::Store { access, value } => (access, value, stored),
-            StatementKind::Drive { access, pin: Pin::Preset, value: Some(value), .. } => (access, value, loaded),
+        let (access, value) = match statement.kind {
+            StatementKind::Store { access, value } => (access, value),
+            StatementKind::Drive { access, pin: Pin::Preset, value: Some(value), .. } => (access, value),
             _ => continue,
         };
-        let (Some(access), Some(value)) = (cx.model.accesses.get(access as usize), int(value)) else { continue };
-        if let Some(message) = is_wrong(cx, cx.model.object(access.object), value) {
+        let Expr::Int(value) = *cx.model.exprs.get(value) else { continue };
+        let Some(access) = cx.model.accesses.get(access as usize) else { continue };
+        let object = cx.model.object(access.object);
+        let wrong = match statement.kind {
+            StatementKind::Store { .. } => stored(cx, object, value),
+            _ => loaded(cx, object, value),
+        };
+        if let Some(message) = wrong {
             sink.report(cx.model.place(access.anchor), message);
         }
     }

@@ -1,5 +1,7 @@
 //! Numbers of objects against how many of them there are.
 
+use rustc_hash::FxHashMap;
+
 use super::program::{ObjectUses, ProgramIndex};
 use super::{Site, drives};
 use crate::model::entity::Family;
@@ -55,21 +57,43 @@ pub struct Beyond<'a> {
 /// The objects of a program that lie beyond what its controller or its configuration has: each bit, word and step, by
 /// address.
 pub fn beyond<'a>(program: &'a ProgramIndex<'a>, target: &Target) -> Vec<Beyond<'a>> {
-    let judge = |it: &'a ObjectUses<'a>| {
-        let (what, last) = number(program.family, it.object)?;
-        let count = target.count(what).filter(|count| last >= count.value)?;
-        Some(Beyond { objects: vec![it], what, count })
-    };
-    program.objects.iter().filter_map(judge).filter(|it| !it.what.is_block()).collect()
+    let mut ends = Ends::new(target);
+    let mut found = Vec::new();
+    for it in &program.objects {
+        let Some((what, last)) = number(program.family, it.object).filter(|it| !it.0.is_block()) else { continue };
+        if let Some(count) = ends.passed_by(what, last) {
+            found.push(Beyond { objects: vec![it], what, count });
+        }
+    }
+    found
+}
+
+/// The counts of a target, each looked up once.
+struct Ends<'t> {
+    target: &'t Target,
+    known: FxHashMap<Counted, Option<Count>>,
+}
+
+impl<'t> Ends<'t> {
+    fn new(target: &'t Target) -> Self {
+        Self { target, known: FxHashMap::default() }
+    }
+
+    /// The count that a number does not fit.
+    fn passed_by(&mut self, what: Counted, number: u32) -> Option<Count> {
+        let count = *self.known.entry(what).or_insert_with(|| self.target.count(what));
+        count.filter(|it| number >= it.value)
+    }
 }
 
 /// The same of timers, counters and other function blocks: each block with all its items.
 pub fn beyond_blocks<'a>(program: &'a ProgramIndex<'a>, target: &Target) -> Vec<Beyond<'a>> {
+    let mut ends = Ends::new(target);
     let mut found: Vec<(u32, Beyond<'a>)> = Vec::new();
     // Items of one block stand together, for objects are in the order of their addresses.
     for it in &program.objects {
         let Some((what, last)) = number(program.family, it.object).filter(|it| it.0.is_block()) else { continue };
-        let Some(count) = target.count(what).filter(|count| last >= count.value) else { continue };
+        let Some(count) = ends.passed_by(what, last) else { continue };
         match found.last_mut().filter(|(number, before)| *number == last && before.what == what) {
             Some((_, before)) => before.objects.push(it),
             None => found.push((last, Beyond { objects: vec![it], what, count })),
@@ -103,13 +127,16 @@ impl Beyond<'_> {
         let Some(numbered) = target.numbered(self.what) else { return format!("`{text}` does not exist") };
         let what = numbered.plural;
         let head = match self.count.by {
-            CountedBy::Configuration => format!("`{text}` is beyond the configured number of {what}"),
+            CountedBy::Configuration => format!("`{text}` is not configured"),
             CountedBy::Controller(name) => format!("`{text}` does not exist on a {name}"),
             CountedBy::Family => format!("`{text}` exists on no controller"),
         };
+        // The letters of a block are the program's own: `Z` or `C` for a counter.
+        let letters = text.split(|it: char| it.is_ascii_digit()).next().unwrap_or_default();
+        let prefix = if self.what.is_block() { letters } else { numbered.prefix };
         match self.count.value.checked_sub(1) {
             None => format!("{head}: there are no {what}"),
-            Some(last) => format!("{head}: {what} are `{0}0` to `{0}{last}`", numbered.prefix),
+            Some(last) => format!("{head}: {what} are `{prefix}0` to `{prefix}{last}`"),
         }
     }
 

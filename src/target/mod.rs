@@ -396,4 +396,84 @@ mod tests {
         assert_eq!(counts(Target::any(Family::Pl7)), [255; 6]);
         assert_eq!((micro.block_count("X"), target("CPU 314").block_count("T")), (None, None));
     }
+
+    #[test]
+    fn the_most_that_there_is() {
+        use Counted::*;
+
+        let count = |target: Target, what| target.count(what).map(|it| (it.value, it.source));
+        let any = Target::any(Family::Pl7);
+        assert_eq!(count(any, Bits), Some((32_634, "PL7:1691")));
+        assert_eq!(count(any, Words), Some((31_232, "PL7:1705")));
+        assert_eq!(count(any, Steps), Some((250, "PL7:4279")));
+        assert_eq!(count(any, MacroSteps), Some((64, "PL7:4280")));
+        assert_eq!(count(any, SystemBits).map(|it| it.0), Some(128));
+        assert_eq!((count(any, Constants), count(any, Bytes)), (None, None));
+        assert_eq!(count(any, Drums), Some((255, "PL7:990")));
+        assert_eq!(count(target("TSX 37-10"), Words), Some((14_336, "PL7:1534")));
+        assert_eq!(count(target("TSX 37-05"), Words), Some((9216, "PL7:1534")));
+        assert_eq!(count(target("TSX 37-22"), Words), Some((17_920, "PL7:1560")));
+        assert_eq!(count(target("TSX 57-103"), Words), Some((26_624, "PL7:1609")));
+        assert_eq!(count(target("TSX 37-22"), MacroSteps), Some((0, "PL7:4280")));
+        assert_eq!(count(target("TSX 37-22"), Registers), Some((4, "PL7:986")));
+        // Its memory is in no table: no controller has more than the largest.
+        let unknown = target("PCX 57-1012").count(Bits).unwrap();
+        assert_eq!((unknown.value, unknown.by), (32_634, CountedBy::Family));
+        let known = target("TSX 57-153").count(Bits).unwrap();
+        assert_eq!((known.value, known.by), (3962, CountedBy::Controller("TSX 57-153")));
+        let step7 = Target::any(Family::Step7);
+        assert_eq!([Bytes, Timers, Counters].map(|it| count(step7, it).map(|it| it.0)), [16_384, 2048, 2048].map(Some));
+        let cpu = target("CPU 314");
+        assert_eq!((count(cpu, Timers), count(cpu, Counters)), (Some((256, "S7:477")), Some((256, "S7:591"))));
+        assert_eq!((count(step7, Words), count(step7, Steps)), (None, None));
+    }
+
+    #[test]
+    fn what_every_controller_of_the_family_has_is_never_less_than_what_one_has() {
+        for name in Target::known() {
+            let one = target(name);
+            let any = Target::any(one.family());
+            for it in one.all_numbered() {
+                let (one, any) = (one.count(it.what), any.count(it.what));
+                assert!(one.map(|it| it.value) <= any.map(|it| it.value), "{name}: {}", it.plural);
+            }
+            assert!(one.events().map(|it| it.last) <= any.events().map(|it| it.last));
+            assert!(one.chart().map(|it| it.all_steps.value) <= any.chart().map(|it| it.all_steps.value));
+        }
+    }
+
+    #[test]
+    fn configured_counts_come_first() {
+        let target = target("TSX 37-22").with_counts(|key| (key == "MW").then_some(100));
+        let words = Count { value: 100, by: CountedBy::Configuration, source: "MW" };
+        assert_eq!(target.count(Counted::Words), Some(words));
+        assert_eq!(target.count(Counted::Bits).map(|it| it.value), Some(256));
+        // The number of system bits is not configured.
+        let all = Target::any(Family::Pl7).with_counts(|_| Some(1));
+        assert_eq!(all.count(Counted::SystemBits).map(|it| it.value), Some(128));
+        assert_eq!(all.count(Counted::Constants).map(|it| it.value), Some(1));
+    }
+
+    #[test]
+    fn events_timers_indexes_and_presets() {
+        let events = |target: Target| target.events().map(|it| (it.first, it.last, it.source));
+        assert_eq!(events(target("TSX 37-08")), Some((1, 8, "PL7:2060")));
+        assert_eq!(events(target("TSX 37-21")), Some((0, 15, "PL7:2061")));
+        assert_eq!(events(target("PCX 57-1012")), Some((0, 31, "PL7:2062")));
+        assert_eq!(events(Target::any(Family::Pl7)), Some((0, 63, "PL7:2063")));
+        assert_eq!(events(Target::any(Family::Step7)), None);
+        let timers = |target: Target| target.all_timers().map(|it| it.value);
+        assert_eq!((timers(target("TSX 37-10")), timers(Target::any(Family::Pl7))), (Some(64), Some(255)));
+        assert_eq!(timers(target("CPU 314")), None);
+        assert!(Target::any(Family::Pl7).has_constant_index() && !target("TSX 37").has_constant_index());
+        assert!(!target("CPU 314").has_constant_index());
+        let preset = |target: Target, what| target.preset(what).map(|it| it.last);
+        let pl7 = Target::any(Family::Pl7);
+        assert_eq!((preset(pl7, Counted::Monostables), preset(pl7, Counted::Drums)), (Some(9999), None));
+        let step7 = Target::any(Family::Step7);
+        assert_eq!((preset(step7, Counted::Counters), preset(step7, Counted::Timers)), (Some(999), None));
+        let lines = |target: Target| target.ladder_lines().map(|it| it.value);
+        assert_eq!((lines(pl7), lines(target("TSX 37-22")), lines(step7)), (Some(16), Some(7), None));
+        assert_eq!((pl7.exchanges(), step7.chart()), (None, None));
+    }
 }

@@ -28,6 +28,18 @@ pub const FAST_PERIOD_MS: Range = Range::new(1, 255, "PL7:2023");
 /// Timers `%TM` and `%T` together.
 pub const TIMERS_MICRO: Limit = Limit::new(64, "PL7:999");
 pub const TIMERS_PREMIUM: Limit = Limit::new(255, "PL7:999");
+/// Priorities among events: of the smaller Micros, and of all others, where EVT0 comes before the rest.
+pub const EVENT_LEVELS_37_10: Limit = Limit::new(1, "PL7:2113");
+pub const EVENT_LEVELS: Limit = Limit::new(2, "PL7:2117");
+/// Inputs of the module in position 1 of a Micro that can raise events.
+pub const EVENT_INPUTS_MICRO: Range = Range::new(0, 3, "PL7:2079");
+/// Discrete channels that are exchanged together (also PL7:2502).
+pub const DISCRETE_GROUP: Limit = Limit::new(8, "PL7:2419");
+/// Analog outputs of a Micro, and channels of analog modules of a Premium that are not isolated, that are exchanged together.
+pub const ANALOG_OUTPUT_GROUP_MICRO: Limit = Limit::new(2, "PL7:2441");
+pub const ANALOG_GROUP_PREMIUM: Limit = Limit::new(4, "PL7:2448");
+/// Power failures below this many milliseconds pass unseen: of an alternating and of a direct supply (also PL7:1778).
+pub const UNSEEN_POWER_FAILURE_MS: (Limit, Limit) = (Limit::new(10, "PL7:1761"), Limit::new(1, "PL7:1761"));
 /// Times of steps, in units of 100 ms.
 pub const STEP_TIMES: Range = Range::new(0, 9999, "PL7:4248");
 /// Only these system words can be a table.
@@ -627,6 +639,59 @@ mod tests {
         }
         for it in BLOCK_COUNTS {
             assert!(it.premium_default.value <= it.premium.value, "{}", it.symbol);
+        }
+    }
+
+    #[test]
+    fn exchanges_of_an_event() {
+        let channels = |name| match processor(name).exchanges {
+            Exchanges::Channels { discrete, analog, other } => [discrete, analog, other].map(|it| it.value),
+            Exchanges::Modules { .. } => panic!("{name}"),
+        };
+        assert_eq!(channels("TSX 57-153"), [32, 8, 4]);
+        assert_eq!(channels("TSX 57-203"), [128, 16, 16]);
+        assert_eq!(channels("TSX 57-4823"), [128, 16, 16]);
+        let micro = Exchanges::Modules { inputs: Limit::new(2, "PL7:2491"), outputs: Limit::new(2, "PL7:2491") };
+        assert_eq!(processor("TSX 37-05").exchanges, micro);
+    }
+
+    #[test]
+    fn each_processor_has_its_columns() {
+        let cells = |name| {
+            let last = processor(name).memory.last().unwrap_or_else(|| panic!("{name}"));
+            (processor(name).memory.len(), last.cartridge, last.ram, last.words, last.constants)
+        };
+        assert_eq!(cells("TSX 37-08"), (1, None, 9, 512, 128));
+        assert_eq!(cells("TSX 37-22"), (4, Some(128), 148, 17_920, 512));
+        assert_eq!(cells("TSX 57-103"), (3, Some(64), 32, 26_624, 512));
+        assert_eq!(cells("TSX 57-2823"), (4, Some(128), 64, 31_232, 512));
+        assert_eq!(cells("PCX 57-203"), (4, Some(128), 48, 31_232, 512));
+        assert_eq!(cells("TSX 57-3623"), (6, Some(384), 80, 31_232, 1024));
+        assert_eq!(cells("PCX 57-353"), (6, Some(384), 96, 31_232, 1024));
+        assert_eq!(cells("TSX 57-453"), (8, Some(960), 176, 31_232, 1024));
+        assert!(processor("TSX 57-102").memory.is_empty());
+        for it in PROCESSORS.iter().filter(|it| !it.memory.is_empty()) {
+            let words = it.memory.iter().map(|it| it.words).max();
+            let most = it.internal_words.or(it.internal_words_default).map(|it| it.value);
+            assert_eq!(words, most, "{}", it.name);
+            assert_eq!(
+                it.memory.first().map(|it| it.words),
+                it.internal_words_default.map(|it| it.value),
+                "{}",
+                it.name
+            );
+        }
+    }
+
+    #[test]
+    fn keys_of_a_configuration_are_unique() {
+        let mut keys: Vec<&str> = NUMBERED.iter().map(|it| it.key).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), NUMBERED.len());
+        for it in BLOCK_COUNTS {
+            let numbered = NUMBERED.iter().find(|row| row.what == it.what).unwrap();
+            assert_eq!((numbered.key, numbered.prefix.trim_start_matches('%')), (it.symbol, it.symbol));
         }
     }
 }
