@@ -45,6 +45,24 @@ pub fn number(family: Family, object: &Object) -> Option<(Counted, u32)> {
     })
 }
 
+/// The counts of a target, each looked up once.
+struct Ends<'t> {
+    target: &'t Target,
+    known: FxHashMap<Counted, Option<Count>>,
+}
+
+impl<'t> Ends<'t> {
+    fn new(target: &'t Target) -> Self {
+        Self { target, known: FxHashMap::default() }
+    }
+
+    /// The count that a number does not fit.
+    fn passed_by(&mut self, what: Counted, number: u32) -> Option<Count> {
+        let count = *self.known.entry(what).or_insert_with(|| self.target.count(what));
+        count.filter(|it| number >= it.value)
+    }
+}
+
 /// An object with a number that there is not.
 #[derive(Debug)]
 pub struct Beyond<'a> {
@@ -66,24 +84,6 @@ pub fn beyond<'a>(program: &'a ProgramIndex<'a>, target: &Target) -> Vec<Beyond<
         }
     }
     found
-}
-
-/// The counts of a target, each looked up once.
-struct Ends<'t> {
-    target: &'t Target,
-    known: FxHashMap<Counted, Option<Count>>,
-}
-
-impl<'t> Ends<'t> {
-    fn new(target: &'t Target) -> Self {
-        Self { target, known: FxHashMap::default() }
-    }
-
-    /// The count that a number does not fit.
-    fn passed_by(&mut self, what: Counted, number: u32) -> Option<Count> {
-        let count = *self.known.entry(what).or_insert_with(|| self.target.count(what));
-        count.filter(|it| number >= it.value)
-    }
 }
 
 /// The same of timers, counters and other function blocks: each block with all its items.

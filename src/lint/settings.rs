@@ -394,6 +394,7 @@ impl Settings {
     pub fn target(&self, family: Family) -> Target {
         match self.controller().and_then(|it| it.parse::<Target>().ok()) {
             Some(it) if it.family() != family => Target::any(family),
+            it if self.0.file.objects.is_empty() => it.unwrap_or(Target::any(family)),
             it => it.unwrap_or(Target::any(family)).with_counts(|key| self.objects(key)),
         }
     }
