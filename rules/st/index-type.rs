@@ -38,7 +38,11 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             "an internal word `%MWi`"
         };
         let on = cx.target.controller().map_or_else(String::new, |it| format!(" on a {it}"));
-        sink.report(index.range, format!("`{}` cannot be an index{on}: an index is {wanted}", index.text))
+        let text = match index.what {
+            IndexKind::Computed => "an expression".to_owned(),
+            _ => format!("`{}`", cx.text_of(index.range)),
+        };
+        sink.report(index.range, format!("{text} cannot be an index{on}: an index is {wanted}"))
             .note("the kinds of index are given in PL7:1077-1080");
     }
 }

@@ -312,8 +312,6 @@ pub struct Loop {
 pub struct Index {
     pub what: IndexKind,
     pub range: TextRange,
-    /// As written, blanks removed.
-    pub text: SmolStr,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

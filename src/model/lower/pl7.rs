@@ -112,9 +112,7 @@ impl Pl7 {
                 }
             }
         };
-        let syntax = expr.syntax();
-        let text = syntax.text().split_whitespace().collect::<String>().into();
-        self.b.model.indexes.push(Index { what, range: syntax.text_range(), text });
+        self.b.model.indexes.push(Index { what, range: expr.syntax().text_range() });
     }
 
     /// A symbol or an item of a DFB instance.
