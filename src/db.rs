@@ -31,7 +31,6 @@ use crate::source::entity_from_address;
 use crate::source::line_index::LineIndex;
 use crate::source::split::{self, SplitHint};
 use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
-use crate::target::Target;
 
 /// A file as it was read.
 #[salsa::input(debug)]
@@ -148,7 +147,7 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
-    let target = target_of(settings, family);
+    let target = settings.target(family);
     let cx = UnitCx::new(&model, &tree, text, settings, &target);
     let findings = run_rules(settings, |rule, findings| match rule.check {
         Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
@@ -268,7 +267,7 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
 pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
     let project = db.project();
     let settings = project.settings(db);
-    let target = target_of(settings, program.family(db));
+    let target = settings.target(program.family(db));
     let facts = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
     let mut index = ProgramIndex::new(program.family(db), facts);
     let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
@@ -330,12 +329,6 @@ fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec
         }
     }
     ran
-}
-
-/// The controller of the settings when it is one of that vendor's, else whatever holds for all of them.
-fn target_of(settings: &Settings, family: Family) -> Target {
-    let configured = settings.controller().and_then(|it| it.parse().ok());
-    configured.filter(|it: &Target| it.family() == family).unwrap_or(Target::any(family))
 }
 
 /// All findings of a file, sorted by place and code; suppressed ones are marked.
@@ -579,6 +572,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
         };
         outcome.unread.push(Unread { path: it.path, reason });
     }
+    outcome.untargeted = untargeted(&linted, &settings, &outcome.active);
     let encodings: Vec<&'static str> = linted.iter().map(|it| it.source.encoding.as_str()).collect();
     let mut db = RootDatabase::new(settings, None);
     partly_read.dedup();
@@ -629,6 +623,15 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     // Dropping all facts takes time, and the process is about to end.
     std::mem::forget(db);
     outcome
+}
+
+/// Families of files for which no controller is configured, though an active rule asks for one.
+fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Family> {
+    let asks = |family: Family| active.iter().any(|it| it.by_controller && it.is_for_family(family));
+    let is_read = |wanted: Family| inputs.iter().any(|it| family(it.detected) == Some(wanted));
+    let mut families = vec![Family::Pl7, Family::Step7];
+    families.retain(|&it| settings.target(it).controller().is_none() && asks(it) && is_read(it));
+    families
 }
 
 /// Bytes of tokens that the syntax could not place.

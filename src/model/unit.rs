@@ -308,6 +308,22 @@ pub struct Loop {
     pub parent: Option<u32>,
 }
 
+/// What stands in the brackets of an indexed object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Index {
+    pub what: IndexKind,
+    pub range: TextRange,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum IndexKind {
+    Object(ObjectId),
+    /// An immediate value.
+    Constant(i64),
+    /// An expression of several terms.
+    Computed,
+}
+
 /// A constant of a type whose exact value a rule asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constant {
@@ -439,6 +455,8 @@ pub struct UnitModel {
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
     pub declarations: Vec<Declaration>,
+    /// Indexes of PL7 objects, in the order of the text.
+    pub indexes: Vec<Index>,
     /// Durations, as written.
     pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,

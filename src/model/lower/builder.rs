@@ -79,6 +79,7 @@ impl Builder {
             calls: Vec::new(),
             loops: Vec::new(),
             declarations: Vec::new(),
+            indexes: Vec::new(),
             constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),

@@ -9,7 +9,9 @@ use crate::model::entity::Entity;
 use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
-use crate::model::unit::{Argument, Call, Callee, Constant, DeadCause, Leave, Mode, OddityKind, Pin, StatementKind};
+use crate::model::unit::{
+    Argument, Call, Callee, Constant, DeadCause, Index, IndexKind, Leave, Mode, OddityKind, Pin, StatementKind,
+};
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
 use crate::syntax::pl7::functions::{self, Function};
 use crate::syntax::{Language, SyntaxKind, SyntaxNode, WalkEvent};
@@ -83,9 +85,7 @@ impl Pl7 {
         let is_direct = index.is_none();
         let parsed = match index {
             Some(index) => {
-                if let Some(expr) = index.expr() {
-                    self.expr(&expr);
-                }
+                self.index(index);
                 object::pl7::parse_indexed(&address, it.suffix().as_deref()).map(|mut object| {
                     object.text = it.syntax().text().into_owned().split_whitespace().collect::<String>().into();
                     object
@@ -103,13 +103,32 @@ impl Pl7 {
         (id, range)
     }
 
+    /// Records an index and its reads.
+    fn index(&mut self, index: ast::Index<'_>) {
+        let Some(expr) = index.expr() else { return };
+        let what = match self.place(&expr) {
+            Some((object, range)) => {
+                self.read(object, range);
+                IndexKind::Object(object)
+            }
+            None => {
+                let (value, _) = self.expr(&expr);
+                match *self.b.exprs().get(value) {
+                    crate::model::expr::Expr::Int(value) => IndexKind::Constant(value),
+                    _ => IndexKind::Computed,
+                }
+            }
+        };
+        self.b.model.indexes.push(Index { what, range: expr.syntax().text_range() });
+    }
+
     /// A symbol or an item of a DFB instance.
     pub(super) fn name_ref(&mut self, it: &ast::NameRef) -> (ObjectId, TextRange) {
         let range = it.syntax().text_range();
         let path = it.path();
         let indexed = it.index();
-        if let Some(expr) = indexed.and_then(ast::Index::expr) {
-            self.expr(&expr);
+        if let Some(index) = indexed {
+            self.index(index);
         }
         if let Some(suggestion) = object::pl7::suggest(&path) {
             let message = format!("`{path}` lacks its percent sign");
