@@ -158,10 +158,10 @@ fn find_any<const N: usize>(bytes: &[u8], from: usize, wanted: [u8; N]) -> Optio
         at += 8;
     }
     let rest = bytes.get(at..)?;
-    let found = match wanted.as_slice() {
-        &[a] => memchr(a, rest),
-        &[a, b] => memchr2(a, b, rest),
-        &[a, b, c] => memchr3(a, b, c, rest),
+    let found = match *wanted.as_slice() {
+        [a] => memchr(a, rest),
+        [a, b] => memchr2(a, b, rest),
+        [a, b, c] => memchr3(a, b, c, rest),
         _ => rest.iter().position(|it| wanted.contains(it)),
     };
     found.map(|length| at + length)
