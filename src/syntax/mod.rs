@@ -11,6 +11,7 @@ mod parser;
 pub mod awl;
 pub mod exchange;
 pub mod pl7;
+pub mod pl72;
 
 pub use kind::{Plc, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError, Token};
