@@ -120,7 +120,7 @@ struct Target {
     /// `TSX 37-22`, `CPU 314`.
     controller: Option<Spanned<String>>,
     /// `V3`, where the documents distinguish versions.
-    version: Option<String>,
+    version: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -295,6 +295,12 @@ impl Settings {
         if let Some(name) = &overrides.controller {
             controller(name).map_err(|message| ConfigError { origin: Origin::Option("--target"), message })?;
         }
+        if let (Some(controller), Some(version)) = (&file.target.controller, &file.target.version) {
+            let target = controller.get_ref().parse::<crate::target::Target>();
+            if let Some(Err(error)) = target.ok().map(|it| it.with_version(Some(version.get_ref()))) {
+                return Err(text.error(Some(version.span()), error.to_string()));
+            }
+        }
         let base = selection(registry, &text, &file.rules, &overrides)?;
         let mut per_file = Vec::new();
         for it in &file.per_file {
@@ -367,7 +373,7 @@ impl Settings {
         let target = &self.0.file.target;
         match &self.0.overrides.controller {
             Some(controller) if target.controller.as_ref().map(|it| it.get_ref()) != Some(controller) => None,
-            _ => target.version.as_deref(),
+            _ => target.version.as_ref().map(|it| it.get_ref().as_str()),
         }
     }
 
@@ -624,6 +630,8 @@ mod tests {
         assert!(error("[rules]\nselekt = []").starts_with("plclint.toml:2:1: unknown field `selekt`"));
         assert!(error("[[per-file]]\nignore = []").contains("missing field `path`"));
         assert!(error("[target]\ncontroller = 'TSX 99'").starts_with("plclint.toml:2:14: unknown controller"));
+        let message = error("[target]\ncontroller = 'TSX 27'\nversion = 'new'");
+        assert!(message.starts_with("plclint.toml:3:11: unknown version"), "{message}");
         assert!(error("[files]\nencoding = 'windows-1225'").starts_with("plclint.toml:2:12: unknown encoding"));
         assert!(error("[files]\nexclude = ['a{']").starts_with("plclint.toml:2:12: "));
         assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));
