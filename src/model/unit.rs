@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use rowan::TextRange;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use super::entity::{BlockName, Entity};
@@ -428,6 +429,8 @@ pub struct UnitModel {
     pub entity: Entity,
     pub language: Language,
     pub objects: Vec<Object>,
+    /// Direct objects by their address as written, where the lowering looks them up so.
+    pub addresses: FxHashMap<SmolStr, ObjectId>,
     pub exprs: Exprs,
     pub statements: Vec<Statement>,
     pub accesses: Vec<Access>,
@@ -451,6 +454,8 @@ pub struct UnitModel {
     pub writes_indirectly: bool,
     /// Some instruction or statement was not understood: it may do anything.
     pub has_gaps: bool,
+    /// Some operand is a floating-point number, or some function makes or takes one.
+    pub has_floats: bool,
 }
 
 impl UnitModel {

@@ -6,6 +6,7 @@
 
 mod builder;
 mod kind;
+mod node;
 mod parser;
 
 pub mod awl;
@@ -13,7 +14,8 @@ pub mod exchange;
 pub mod pl7;
 pub mod pl72;
 
-pub use kind::{Plc, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
+pub use kind::SyntaxKind;
+pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
 pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError, Token};
 
 /// Mnemonic set of a Siemens program: the same word means different things in the two (`SE`, `A`, `AD`, `E`).
