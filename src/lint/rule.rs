@@ -89,6 +89,7 @@ impl Rule {
     pub fn is_for_family(&self, family: Family) -> bool {
         self.dialects.iter().any(|dialect| match family {
             Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st"),
+            Family::Pl72 => matches!(*dialect, "all" | "pl72"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })
     }

@@ -12,6 +12,7 @@ mod parser;
 pub mod awl;
 pub mod exchange;
 pub mod pl7;
+pub mod pl72;
 
 pub use kind::SyntaxKind;
 pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
