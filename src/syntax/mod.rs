@@ -36,6 +36,10 @@ pub enum Language {
     Pl7Il,
     /// PL7 structured text.
     Pl7St,
+    /// PL7 Grafcet: a page of a chart in the exchange form, with the code of its actions and receptivities.
+    Pl7Gr7,
+    /// IEC 61131-3 sequential function chart as text, with PL7 code.
+    Sfc,
     /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
     Exchange,
 }
@@ -46,6 +50,7 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Awl(mnemonics) => awl::parse(text, mnemonics),
         Language::Pl7Il => pl7::parse_il(text),
         Language::Pl7St => pl7::parse_st(text),
+        Language::Pl7Gr7 | Language::Sfc => pl7::parse_chart(text),
         Language::Exchange => exchange::parse(text),
     }
 }

@@ -1,9 +1,10 @@
-//! PL7 instruction list and structured text, in the exchange form and as pasted in documents.
+//! PL7 instruction list, structured text and Grafcet, in the exchange form and as pasted in documents.
 //!
 //! One lexer, one expression grammar and one frame of sentences serve both languages. The tree is
 //! `Root > Sentence > (LabelDef | IlInstr | statement)*`; [`ast`] gives it types.
 
 pub mod ast;
+pub mod chart;
 mod expr;
 pub mod functions;
 mod grammar;
@@ -27,4 +28,9 @@ pub fn parse_il(text: &str) -> Parse {
 /// Parses one unit of structured text. Total and linear for every text.
 pub fn parse_st(text: &str) -> Parse {
     grammar::parse(text, Dialect::St)
+}
+
+/// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
+pub fn parse_chart(text: &str) -> Parse {
+    grammar::parse_chart(text)
 }
