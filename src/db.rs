@@ -669,6 +669,8 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
         (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),
         (_, Some(Language::Pl7St)) => "PL7 structured text".to_owned(),
+        (_, Some(Language::Pl7Gr7)) => "PL7 Grafcet".to_owned(),
+        (_, Some(Language::Sfc)) => "textual SFC".to_owned(),
         _ => "PLC text".to_owned(),
     }
 }

@@ -23,11 +23,22 @@ pub enum Dialect {
     Pl7,
     Pl7Il,
     Pl7St,
+    Pl7Gr7,
     Pl72,
+    Sfc,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 6] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St, Self::Pl72];
+    pub const ALL: [Self; 8] = [
+        Self::Auto,
+        Self::Step7,
+        Self::Pl7,
+        Self::Pl7Il,
+        Self::Pl7St,
+        Self::Pl7Gr7,
+        Self::Pl72,
+        Self::Sfc,
+    ];
 
     pub fn as_str(self) -> &'static str {
         match self {
@@ -36,7 +47,9 @@ impl Dialect {
             Self::Pl7 => "pl7",
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
+            Self::Pl7Gr7 => "pl7-gr7",
             Self::Pl72 => "pl7-2",
+            Self::Sfc => "sfc",
         }
     }
 }
@@ -53,7 +66,7 @@ pub struct UnknownDialect(pub String);
 
 impl fmt::Display for UnknownDialect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st or pl7-2", self.0)
+        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st, pl7-gr7, pl7-2 or sfc", self.0)
     }
 }
 
@@ -74,6 +87,10 @@ impl FromStr for Dialect {
 pub enum Pl7Text {
     Il,
     St,
+    /// Pages of Grafcet in the exchange form.
+    Gr7,
+    /// A chart in the textual form of IEC 61131-3.
+    Sfc,
 }
 
 /// What a file is.
@@ -107,7 +124,6 @@ pub struct FileHint<'p> {
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
     pub const LADDER: &str = "PL7 ladder (LD)";
-    pub const GRAFCET: &str = "PL7 Grafcet (GR7)";
     pub const OTHER_LANGUAGE: &str = "PL7 language other than IL and ST";
     pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
     pub const DFB: &str = "PL7 DFB type";
@@ -121,7 +137,6 @@ pub mod unsupported {
     pub const STEP5: &str = "STEP 5 program";
     pub const SYMBOLS: &str = "STEP 7 symbol table";
     pub const IEC: &str = "IEC 61131-3 text that is not PL7";
-    pub const SFC: &str = "IEC 61131-3 textual SFC";
 
     /// Whether such a file holds code that may use any object and call any block.
     pub fn is_code(what: &str) -> bool {
@@ -250,11 +265,17 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
         Dialect::Step7 => Detected::Step7,
-        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl72 if tally.is_exchange() => Detected::Exchange,
+        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl7Gr7 | Dialect::Pl72 | Dialect::Sfc
+            if tally.is_exchange() =>
+        {
+            Detected::Exchange
+        }
         Dialect::Pl7 => Detected::Pasted(tally.pl7_text(extension(hint.path))),
         Dialect::Pl7Il => Detected::Pasted(Pl7Text::Il),
         Dialect::Pl7St => Detected::Pasted(Pl7Text::St),
+        Dialect::Pl7Gr7 => Detected::Pasted(Pl7Text::Gr7),
         Dialect::Pl72 => Detected::Pl72,
+        Dialect::Sfc => Detected::Pasted(Pl7Text::Sfc),
     }
 }
 
@@ -306,8 +327,8 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
             Detected::Pasted(tally.pl7_text(extension))
         }
         Extension::Ld if tally.rung > 0 => Detected::Unsupported { what: unsupported::LADDER },
-        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Unsupported { what: unsupported::GRAFCET },
-        Extension::Sfc if tally.chart > 0 => Detected::Unsupported { what: unsupported::SFC },
+        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
+        Extension::Sfc if tally.chart > 0 => Detected::Pasted(Pl7Text::Sfc),
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
         Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
@@ -357,7 +378,11 @@ struct Tally {
     /// Declaration sections and program units of IEC 61131-3.
     iec: u32,
     rung: u32,
+    /// Words of charts, and those among them that only the pages of PL7 have.
     chart: u32,
+    pages: u32,
+    /// Lines of charts that start with a word which other texts have too.
+    chart_words: u32,
     /// Words of S7-GRAPH.
     graph: u32,
     step5: u32,
@@ -426,13 +451,19 @@ impl Tally {
                 self.st += 1;
                 self.scl += u32::from(self.in_code_block);
             }
-            None => {}
+            Some(Pl7Text::Gr7 | Pl7Text::Sfc) | None => {}
         }
         match first {
             "RUNG" | "END_RUNG" | "OPEN_CONTACT" | "CLOSE_CONTACT" | "CLOSED_CONTACT" | "P_CONTACT" | "N_CONTACT"
             | "H_LINK" | "V_LINK" | "EMPTY_LINE" | "EMPTY_CELL" | "SHORT_CIRCUIT" | "HASH_COIL" => self.rung += 1,
-            "NB_PAGES" | "END_PAGE" | "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "T_S_OR_LINK"
-            | "S_T_OR_LINK" => self.chart += 1,
+            "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK" => {
+                self.chart += 1;
+                self.pages += 1;
+            }
+            "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" => self.chart += 1,
+            "STEP" | "TRANSITION" | "ACTION" | "END_ACTION" | "PAGE" if is_chart_line(code, first) => {
+                self.chart_words += 1;
+            }
             "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
             "VAR_GLOBAL" | "PROGRAM" | "END_PROGRAM" | "CONFIGURATION" | "VAR_EXTERNAL" => self.iec += 1,
             "VAR" | "VAR_INPUT" | "VAR_OUTPUT" | "VAR_IN_OUT" | "END_VAR" => {
@@ -508,6 +539,10 @@ impl Tally {
             return Some(Detected::Step7);
         }
         let structure = if self.st > 0 { self.scl } else { 0 };
+        let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
+        if self.chart > 1 && self.graph == 0 && charted && (self.pages > 1 || self.pl7 > 0 && self.iec == 0) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
         if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
@@ -515,6 +550,10 @@ impl Tally {
     }
 
     fn pl7_text(&self, extension: Extension) -> Pl7Text {
+        // Under headings, each unit says what it is.
+        if self.chart > 0 && self.headings() == 0 {
+            return if self.pages > 0 { Pl7Text::Gr7 } else { Pl7Text::Sfc };
+        }
         let (il, st) = match (self.headings_il, self.headings_st) {
             (0, 0) => (self.il, self.st),
             headings => headings,
@@ -527,13 +566,20 @@ impl Tally {
     }
 
     fn pl7_unsupported(&self) -> Option<&'static str> {
-        if self.chart > 0 {
-            Some(unsupported::GRAFCET)
-        } else if self.rung > 0 {
-            Some(unsupported::LADDER)
-        } else {
-            None
-        }
+        if self.chart == 0 && self.rung > 0 { Some(unsupported::LADDER) } else { None }
+    }
+}
+
+/// Whether a line that starts with a common word is one of a chart: `STEP 3 AT (C 4,L 3) :`, `TRANSITION FROM X0 TO X1`.
+fn is_chart_line(code: &str, first: &str) -> bool {
+    let rest = word(code).1.trim_start();
+    let next = word(rest).0;
+    match first {
+        "STEP" => rest.contains(':'),
+        "ACTION" => rest.starts_with('(') || rest.contains(':'),
+        "TRANSITION" => rest.starts_with('(') || ["AT", "FROM"].iter().any(|it| it.eq_ignore_ascii_case(next)),
+        "PAGE" => !next.is_empty() && next.bytes().all(|it| it.is_ascii_digit()),
+        _ => true,
     }
 }
 
@@ -906,7 +952,7 @@ mod tests {
         check("a.dfb", "FUNCTION_BLOCK Cpt\nEND_FUNCTION_BLOCK", unsupported(unsupported::DFB));
         check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", unsupported(unsupported::VARIABLES));
         check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
-        check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", unsupported(unsupported::GRAFCET));
+        check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", Detected::Pasted(Pl7Text::Gr7));
         check(
             "a.gr7",
             "FUNCTION_BLOCK \"x\"\nVAR\nEND_VAR\nGRAPH7\nSEQUENCE\nINITIAL_STEP S1:\n",
@@ -918,7 +964,22 @@ mod tests {
         check("a.sdf", "\"a\",\"I 0.0\",\"BOOL\",\"x\"\n", unsupported(unsupported::SYMBOLS));
         check("a.asc", "126,Pump                    E       0.0 BOOL      x\n", unsupported(unsupported::SYMBOLS));
         check("a.seq", "\tPump\tE 0.0\tcomment\n", unsupported(unsupported::SYMBOLS));
-        check("a.sfc", "INITIAL_STEP X0 : END_STEP", unsupported(unsupported::SFC));
+        check("a.sfc", "INITIAL_STEP X0 : END_STEP", Detected::Pasted(Pl7Text::Sfc));
+        check("a.sfc", "<svg/>", Detected::NotPlc);
+    }
+
+    #[test]
+    fn charts() {
+        let page = "NB_PAGES = 8\nPAGE 0\nINITIAL_STEP 0 AT (C 4,L 1) :\nEND_STEP\nTRANSITION (ST) AT (C 4,L 2) :\n\
+                    (*PHRASE*) %I1.0 (*END_PHRASE*)\nEND_TRANSITION\nEND_PAGE\n";
+        let textual = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); END_STEP\n\
+                       TRANSITION FROM X0 TO X1 := %I1.0 AND NOT %M3; END_TRANSITION\n\
+                       ACTION Fill : %Q2.0 := TRUE; END_ACTION\n";
+        for path in ["a.txt", "a.gr7", "a.st", "a.sfc"] {
+            check(path, page, Detected::Pasted(Pl7Text::Gr7));
+            check(path, textual, Detected::Pasted(Pl7Text::Sfc));
+        }
+        check("a.txt", "Step 1: open the valve\nStep 2: close it\nAction: none\n", Detected::NotPlc);
     }
 
     #[test]
