@@ -184,7 +184,7 @@ kinds! {
     Connector,
     ChartComment,
     /// `(C 4,L 3)`.
-    Cell,
+    PageCell,
     /// Code of an action or a receptivity in a language that is not read.
     UnreadCode,
 

@@ -107,7 +107,7 @@ nodes! {
     Segment,
     Connector,
     ChartComment,
-    Cell,
+    PageCell,
     /// Code in a language that is not read.
     UnreadCode,
 }
@@ -144,7 +144,7 @@ impl<'t> ChartStep<'t> {
         self.child()
     }
 
-    pub fn cell(self) -> Option<Cell<'t>> {
+    pub fn cell(self) -> Option<PageCell<'t>> {
         self.child()
     }
 
@@ -217,7 +217,7 @@ impl<'t> Transition<'t> {
         self.significant().next()
     }
 
-    pub fn cell(self) -> Option<Cell<'t>> {
+    pub fn cell(self) -> Option<PageCell<'t>> {
         self.child()
     }
 
@@ -280,11 +280,11 @@ impl<'t> ChartLink<'t> {
         }
     }
 
-    pub fn from(self) -> impl Iterator<Item = Cell<'t>> {
+    pub fn from(self) -> impl Iterator<Item = PageCell<'t>> {
         cells(self.syntax().children_with_tokens(), false)
     }
 
-    pub fn to(self) -> impl Iterator<Item = Cell<'t>> {
+    pub fn to(self) -> impl Iterator<Item = PageCell<'t>> {
         cells(self.syntax().children_with_tokens(), true)
     }
 
@@ -294,14 +294,14 @@ impl<'t> ChartLink<'t> {
 }
 
 /// Cells before `TO`, or behind it.
-fn cells<'t>(elements: impl Iterator<Item = SyntaxElement<'t>>, behind: bool) -> impl Iterator<Item = Cell<'t>> {
+fn cells<'t>(elements: impl Iterator<Item = SyntaxElement<'t>>, behind: bool) -> impl Iterator<Item = PageCell<'t>> {
     let mut passed = false;
     elements.filter_map(move |it| match it {
         SyntaxElement::Token(it) => {
             passed |= it.kind() == SyntaxKind::Ident && Word::of(it.text()) == Some(Word::To);
             None
         }
-        SyntaxElement::Node(it) => Cell::cast(it).filter(|_| passed == behind),
+        SyntaxElement::Node(it) => PageCell::cast(it).filter(|_| passed == behind),
     })
 }
 
@@ -312,11 +312,11 @@ impl<'t> Segment<'t> {
         keyword.is_some_and(|it| Word::of(it.text()) == Some(Word::Segment(true)))
     }
 
-    pub fn from(self) -> Option<Cell<'t>> {
+    pub fn from(self) -> Option<PageCell<'t>> {
         cells(self.syntax().children_with_tokens(), false).next()
     }
 
-    pub fn to(self) -> Option<Cell<'t>> {
+    pub fn to(self) -> Option<PageCell<'t>> {
         cells(self.syntax().children_with_tokens(), true).next()
     }
 }
@@ -337,12 +337,12 @@ impl<'t> Connector<'t> {
         self.child()
     }
 
-    pub fn cell(self) -> Option<Cell<'t>> {
+    pub fn cell(self) -> Option<PageCell<'t>> {
         self.child()
     }
 }
 
-impl Cell<'_> {
+impl PageCell<'_> {
     /// Column and line, from 0: `(C 4,L 3)`, whose letters may be glued to their numbers or left out.
     pub fn place(self) -> Option<(u32, u32)> {
         let (mut column, mut line) = (None, None);

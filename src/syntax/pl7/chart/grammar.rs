@@ -1,7 +1,7 @@
 //! Grammar of charts. The code of actions and receptivities is read by the grammars of its language.
 
 use SyntaxKind::{
-    Arrow, Assign, Association, Bang, Cell, CharString, ChartAction, ChartComment, ChartLink, ChartStep, Colon, Comma,
+    Arrow, Assign, Association, Bang, PageCell, CharString, ChartAction, ChartComment, ChartLink, ChartStep, Colon, Comma,
     Connector, Elision, Eq, Error, Ident, LBrack, LParen, LabelAddress, Number, ObjectAddress, Page, PageCount, RBrack,
     RParen, Segment, Semicolon, SentenceEnd, SentenceStart, StepName, Transition, TransitionEnd, UnreadCode,
 };
@@ -222,7 +222,7 @@ impl<'t> Grammar<'_, 't> {
         if !self.p.eat(RParen) {
             self.expected("`)`");
         }
-        self.p.complete(m, Cell);
+        self.p.complete(m, PageCell);
     }
 
     /// Number or name of a step: `3`, `X3`, `%X2.1`, `M 2`, `Init`.

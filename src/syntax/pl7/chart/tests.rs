@@ -67,7 +67,7 @@ fn a_page_is_read() {
     assert_eq!((transition.language(), transition.statements().count()), (Some(CodeLanguage::St), 1));
     let [link] = all::<ChartLink>(&parse)[..] else { panic!("one link") };
     assert_eq!(link.kind(), Some(LinkKind::OrConvergence));
-    let places = |cells: Vec<super::ast::Cell<'_>>| cells.iter().filter_map(|it| it.place()).collect::<Vec<_>>();
+    let places = |cells: Vec<super::ast::PageCell<'_>>| cells.iter().filter_map(|it| it.place()).collect::<Vec<_>>();
     assert_eq!((places(link.from().collect()), places(link.to().collect())), (vec![(4, 4)], vec![(4, 3)]));
     let segments: Vec<_> = link
         .segments()
