@@ -671,6 +671,7 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
         (_, Some(Language::Pl7St)) => "PL7 structured text".to_owned(),
         (_, Some(Language::Pl7Gr7)) => "PL7 Grafcet".to_owned(),
         (_, Some(Language::Sfc)) => "textual SFC".to_owned(),
+        (_, Some(Language::Pl7Ld)) => "PL7 ladder".to_owned(),
         _ => "PLC text".to_owned(),
     }
 }

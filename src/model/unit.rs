@@ -9,6 +9,7 @@ use rowan::TextRange;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
+use super::chart::Chart;
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::literal::{LiteralError, Value};
@@ -222,6 +223,8 @@ pub struct Label {
     pub range: TextRange,
     /// Index of the first statement after it.
     pub statement: u32,
+    /// The piece of code that it belongs to, as [`Jump::part`].
+    pub part: u32,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -236,6 +239,8 @@ pub struct Jump {
     pub when: ExprId,
     /// The first label of that name, an index into [`UnitModel::labels`].
     pub target: Option<u32>,
+    /// Number of the piece of code, with labels of its own, that it belongs to: an action of a chart. 0 elsewhere.
+    pub part: u32,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -474,6 +479,8 @@ pub struct UnitModel {
     pub has_gaps: bool,
     /// Somewhere a floating-point number meets a number that may not be one.
     pub mixes_floats: bool,
+    /// What the unit holds of a chart.
+    pub chart: Option<Box<Chart>>,
 }
 
 impl UnitModel {

@@ -10,6 +10,7 @@ use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
 };
 use crate::model::entity::BlockKind;
+use crate::syntax::pl7::ladder_words;
 
 use super::scan::{Comments, Lines};
 
@@ -19,22 +20,24 @@ pub enum Dialect {
     #[default]
     Auto,
     Step7,
-    /// PL7, instruction list or structured text by content.
+    /// PL7, its language by content.
     Pl7,
     Pl7Il,
     Pl7St,
     Pl7Gr7,
+    Pl7Ld,
     Pl72,
     Sfc,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Auto,
         Self::Step7,
         Self::Pl7,
         Self::Pl7Il,
         Self::Pl7St,
+        Self::Pl7Ld,
         Self::Pl7Gr7,
         Self::Pl72,
         Self::Sfc,
@@ -48,6 +51,7 @@ impl Dialect {
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
             Self::Pl7Gr7 => "pl7-gr7",
+            Self::Pl7Ld => "pl7-ld",
             Self::Pl72 => "pl7-2",
             Self::Sfc => "sfc",
         }
@@ -66,7 +70,8 @@ pub struct UnknownDialect(pub String);
 
 impl fmt::Display for UnknownDialect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st, pl7-gr7, pl7-2 or sfc", self.0)
+        let known: Vec<&str> = Dialect::ALL.iter().map(|it| it.as_str()).collect();
+        write!(f, "unknown dialect `{}`, expected one of {}", self.0, known.join(", "))
     }
 }
 
@@ -82,7 +87,7 @@ impl FromStr for Dialect {
     }
 }
 
-/// The text languages of PL7.
+/// The languages of PL7 whose sections are text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pl7Text {
     Il,
@@ -91,6 +96,7 @@ pub enum Pl7Text {
     Gr7,
     /// A chart in the textual form of IEC 61131-3.
     Sfc,
+    Ld,
 }
 
 /// What a file is.
@@ -123,8 +129,7 @@ pub struct FileHint<'p> {
 
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
-    pub const LADDER: &str = "PL7 ladder (LD)";
-    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL and ST";
+    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST, LD and GR7";
     pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
@@ -265,7 +270,13 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
         Dialect::Step7 => Detected::Step7,
-        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl7Gr7 | Dialect::Pl72 | Dialect::Sfc
+        Dialect::Pl7
+        | Dialect::Pl7Il
+        | Dialect::Pl7St
+        | Dialect::Pl7Ld
+        | Dialect::Pl7Gr7
+        | Dialect::Pl72
+        | Dialect::Sfc
             if tally.is_exchange() =>
         {
             Detected::Exchange
@@ -274,6 +285,7 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
         Dialect::Pl7Il => Detected::Pasted(Pl7Text::Il),
         Dialect::Pl7St => Detected::Pasted(Pl7Text::St),
         Dialect::Pl7Gr7 => Detected::Pasted(Pl7Text::Gr7),
+        Dialect::Pl7Ld => Detected::Pasted(Pl7Text::Ld),
         Dialect::Pl72 => Detected::Pl72,
         Dialect::Sfc => Detected::Pasted(Pl7Text::Sfc),
     }
@@ -282,11 +294,6 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
 /// The language of PL7 text that no heading and no file name tells.
 pub(super) fn pl7_text(text: &str) -> Pl7Text {
     Tally::of(text).pl7_text(Extension::Other)
-}
-
-/// The form of PL7 text that is neither IL nor ST, by its content.
-pub(super) fn pl7_unsupported(text: &str) -> Option<&'static str> {
-    Tally::of(text).pl7_unsupported()
 }
 
 fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) -> Detected {
@@ -326,7 +333,7 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Il | Extension::St if tally.lines == 0 || weak && tally.il + tally.st > 0 => {
             Detected::Pasted(tally.pl7_text(extension))
         }
-        Extension::Ld if tally.rung > 0 => Detected::Unsupported { what: unsupported::LADDER },
+        Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
         Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
         Extension::Sfc if tally.chart > 0 => Detected::Pasted(Pl7Text::Sfc),
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
@@ -360,6 +367,7 @@ struct Tally {
     /// Headings of pasted PL7 text, by language.
     headings_il: u32,
     headings_st: u32,
+    headings_ld: u32,
     headings_other: u32,
     /// Headings of PL7-2 text, in any language; the others do not count them.
     headings_pl7_2: u32,
@@ -377,7 +385,9 @@ struct Tally {
     in_code_block: bool,
     /// Declaration sections and program units of IEC 61131-3.
     iec: u32,
+    /// Words that frame rungs, and elements of them.
     rung: u32,
+    cells: u32,
     /// Words of charts, and those among them that only the pages of PL7 have.
     chart: u32,
     pages: u32,
@@ -427,7 +437,8 @@ impl Tally {
                 _ if heading.pl7_2 => self.headings_pl7_2 += 1,
                 HeadingLanguage::Il => self.headings_il += 1,
                 HeadingLanguage::St => self.headings_st += 1,
-                HeadingLanguage::Ladder | HeadingLanguage::Grafcet => self.headings_other += 1,
+                HeadingLanguage::Ladder => self.headings_ld += 1,
+                HeadingLanguage::Grafcet => self.headings_other += 1,
             }
         } else if let Some(block) = block_header(line) {
             self.block_headers += 1;
@@ -451,11 +462,15 @@ impl Tally {
                 self.st += 1;
                 self.scl += u32::from(self.in_code_block);
             }
-            Some(Pl7Text::Gr7 | Pl7Text::Sfc) | None => {}
+            Some(Pl7Text::Ld | Pl7Text::Gr7 | Pl7Text::Sfc) | None => {}
         }
         match first {
-            "RUNG" | "END_RUNG" | "OPEN_CONTACT" | "CLOSE_CONTACT" | "CLOSED_CONTACT" | "P_CONTACT" | "N_CONTACT"
-            | "H_LINK" | "V_LINK" | "EMPTY_LINE" | "EMPTY_CELL" | "SHORT_CIRCUIT" | "HASH_COIL" => self.rung += 1,
+            "RUNG" | "END_RUNG" => self.rung += 1,
+            // Words without an underscore are words of other languages too.
+            _ if first.contains('_') && ladder_words::lookup(first).is_some() => {
+                self.rung += 1;
+                self.cells += 1;
+            }
             "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK" => {
                 self.chart += 1;
                 self.pages += 1;
@@ -488,7 +503,7 @@ impl Tally {
     }
 
     fn headings(&self) -> u32 {
-        self.headings_il + self.headings_st + self.headings_other
+        self.headings_il + self.headings_st + self.headings_ld + self.headings_other
     }
 
     /// Lines that are code of a dialect that is read.
@@ -528,8 +543,8 @@ impl Tally {
         }
         let most = |count: u32| count * 5 >= lines * 3;
         let enough = |count: u32| count > 2 || count > 1 && count == lines;
-        if self.rung > 1 && most(self.rung + self.il) {
-            return Some(Detected::Unsupported { what: unsupported::LADDER });
+        if self.rung > 1 && self.cells > 0 && most(self.rung + self.il + self.st) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
         let step7 = self.step7 + if self.step7 > 0 { self.declarations } else { 0 };
         if enough(self.step7) && most(step7) && self.step7 > self.il + self.st {
@@ -540,7 +555,8 @@ impl Tally {
         }
         let structure = if self.st > 0 { self.scl } else { 0 };
         let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
-        if self.chart > 1 && self.graph == 0 && charted && (self.pages > 1 || self.pl7 > 0 && self.iec == 0) {
+        let is_chart = self.chart > 0 && self.chart + self.chart_words > 2 && self.graph == 0;
+        if is_chart && charted && (self.pages > 1 || self.pl7 > 0 && self.iec == 0) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
         if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
@@ -554,19 +570,19 @@ impl Tally {
         if self.chart > 0 && self.headings() == 0 {
             return if self.pages > 0 { Pl7Text::Gr7 } else { Pl7Text::Sfc };
         }
-        let (il, st) = match (self.headings_il, self.headings_st) {
-            (0, 0) => (self.il, self.st),
+        // Of all words, those of rungs are the least ambiguous; a line of a rung may look like a line of other languages.
+        let (il, st, ld) = match (self.headings_il, self.headings_st, self.headings_ld) {
+            (0, 0, 0) => (self.il, self.st, self.cells),
             headings => headings,
         };
+        if ld > 0 && ld >= il.max(st) {
+            return Pl7Text::Ld;
+        }
         match il.cmp(&st) {
             std::cmp::Ordering::Greater => Pl7Text::Il,
             std::cmp::Ordering::Equal if extension == Extension::Il => Pl7Text::Il,
             _ => Pl7Text::St,
         }
-    }
-
-    fn pl7_unsupported(&self) -> Option<&'static str> {
-        if self.chart == 0 && self.rung > 0 { Some(unsupported::LADDER) } else { None }
     }
 }
 
@@ -842,6 +858,7 @@ mod tests {
     const STEP7: Detected = Detected::Step7;
     const IL: Detected = Detected::Pasted(Pl7Text::Il);
     const ST: Detected = Detected::Pasted(Pl7Text::St);
+    const LD: Detected = Detected::Pasted(Pl7Text::Ld);
 
     fn unsupported(what: &'static str) -> Detected {
         Detected::Unsupported { what }
@@ -881,13 +898,13 @@ mod tests {
                 unsupported(unsupported::SCL),
             );
             check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", unsupported(unsupported::STEP5));
-            check(path, RUNG, unsupported(unsupported::LADDER));
+            check(path, RUNG, LD);
         }
         check("a.txt", "DATA_BLOCK DB 1\nSTRUCT\n a : INT;\nEND_STRUCT;\nBEGIN\n a := 1;\nEND_DATA_BLOCK", STEP7);
         check("a.txt", "U S1\n= Sto\nU X41\nO(\nUN T2p[21]\n)\n= X1", STEP7);
         check("a.txt", "U T1\n= A4.0", STEP7);
         check("a.txt", "ST : MAST - SR10\n%M0 := TRUE;", ST);
-        check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", ST);
+        check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", LD);
     }
 
     #[test]
@@ -930,7 +947,7 @@ mod tests {
                 check(path, &format!("(* press *)\n{heading}\n{rung}"), Detected::Pl72);
             }
             check(path, &format!("LD : PL7-2 - POST\n{rung}ST : MAST - SR1\n! %M1 := %M2;\n"), ST);
-            check(path, &format!("LD : MAST - POST\n{rung}"), ST);
+            check(path, &format!("LD : MAST - POST\n{rung}"), LD);
         }
         let prose = "A program of the TSX 27 is written under headings of this kind:\n\nLD : PL7-2 - POST\n\n\
                      There is one for each part of the program, as the document says.\n";

@@ -10,7 +10,7 @@ use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::detect::{Detected, Pl7Text, pl7_text, pl7_unsupported, unsupported};
+use super::detect::{Detected, Pl7Text, pl7_text, unsupported};
 use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_address, pl7_heading,
     strip_prefix_ignore_case, word,
@@ -127,8 +127,7 @@ impl Units<'_> {
                 Some(language) => (language, draft.unsupported),
                 None => {
                     let text = self.text.get(draft.start..end).unwrap_or_default();
-                    let form = draft.unsupported.or_else(|| pl7_unsupported(text));
-                    (if form.is_some() { Language::Exchange } else { pl7_language(pl7_text(text)) }, form)
+                    (pl7_language(pl7_text(text)), draft.unsupported)
                 }
             };
             UnitSpan {
@@ -171,6 +170,7 @@ fn pl7_language(text: Pl7Text) -> Language {
     match text {
         Pl7Text::Il => Language::Pl7Il,
         Pl7Text::St => Language::Pl7St,
+        Pl7Text::Ld => Language::Pl7Ld,
         Pl7Text::Gr7 => Language::Pl7Gr7,
         Pl7Text::Sfc => Language::Sfc,
     }
@@ -284,7 +284,7 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
                 _ if heading.pl7_2 => (Language::Exchange, Some(unsupported::PL7_2)),
                 HeadingLanguage::Il => (Language::Pl7Il, None),
                 HeadingLanguage::St => (Language::Pl7St, None),
-                HeadingLanguage::Ladder => (Language::Exchange, Some(unsupported::LADDER)),
+                HeadingLanguage::Ladder => (Language::Pl7Ld, None),
                 HeadingLanguage::Grafcet => (Language::Pl7Gr7, None),
             };
             units.push(units.code_end, Draft { unsupported, ..Draft::new(heading.entity, Some(language)) });
@@ -460,7 +460,7 @@ impl<'t> SourceUnit<'t> {
         let (language, unsupported) = match (language.as_str(), program_language.as_str()) {
             ("IL", _) => (Some(Language::Pl7Il), None),
             ("ST", _) => (Some(Language::Pl7St), None),
-            ("LD", _) => (Some(Language::Exchange), Some(unsupported::LADDER)),
+            ("LD", _) => (Some(Language::Pl7Ld), None),
             (_, "GR7") | ("GR7", _) => (Some(Language::Pl7Gr7), None),
             ("" | "OTHERS", "") if matches!(entity, Entity::Pl7 { part: Part::Chart(_), .. }) => {
                 (Some(Language::Pl7Gr7), None)
@@ -539,6 +539,7 @@ mod tests {
 
     const GERMAN: Language = Language::Awl(Mnemonics::German);
     const ST: Language = Language::Pl7St;
+    const LD: Language = Language::Pl7Ld;
     const IL: Language = Language::Pl7Il;
     const GR7: Language = Language::Pl7Gr7;
     const KEYS: Language = Language::Exchange;
@@ -670,14 +671,14 @@ mod tests {
                     ST,
                     "ST : MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)\n%M1\n",
                 ),
-                ("FAST - MAIN", KEYS, "LD : FAST - MAIN\nRUNG\n"),
+                ("FAST - MAIN", LD, "LD : FAST - MAIN\nRUNG\n"),
                 ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
                 ("MAST - PRL", KEYS, "ST : PL7-2 - PRL\n"),
                 ("MAST - Peinture - CHART", GR7, "GR7 : MAST - Peinture - CHART\n"),
             ],
         );
-        use super::unsupported::{LADDER, PL7_2};
-        let expected = [None, None, None, None, Some(LADDER), Some(PL7_2), Some(PL7_2), None];
+        use super::unsupported::PL7_2;
+        let expected = [None, None, None, None, None, Some(PL7_2), Some(PL7_2), None];
         assert_eq!(unsupported(&units), expected);
     }
 
@@ -736,7 +737,7 @@ mod tests {
 
     #[test]
     fn programs_of_exchange_files() {
-        use super::unsupported::{DFB, LADDER, OTHER_LANGUAGE};
+        use super::unsupported::{DFB, OTHER_LANGUAGE};
         for (keys, program, expected, language, form) in [
             ("ADDRESS = MAST SR1", "PROGRAM", "MAST - SR1", ST, None),
             ("NAME = 'FAST_MAIN' LANGUAGE = IL ADDRESS = FAST MAIN", "PROGRAM", "FAST - MAIN", IL, None),
@@ -753,8 +754,8 @@ mod tests {
             ("LANGUAGE = OTHERS", "PROGRAMMAST'Chart'", "MAST - CHART", GR7, None),
             ("LANGUAGE = OTHERS", "PROGRAM", "MAST - MAIN", KEYS, Some(OTHER_LANGUAGE)),
             ("ADDRESS = MAST MACRO2", "PROGRAM", "MAST - MACRO2", GR7, None),
-            ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", KEYS, Some(LADDER)),
-            ("NAME = 'x'", "PROGRAM\nRUNG", "MAST - x", KEYS, Some(LADDER)),
+            ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", LD, None),
+            ("NAME = 'x'", "PROGRAM\nRUNG\nH_LINK(10),COIL(%M0);\nEND_RUNG", "MAST - x", LD, None),
             ("NAME = 'x'", "PROGRAM\n LD %M0\n ST %M1", "MAST - x", IL, None),
             ("NAME = 'x'", "FUNCTION_BLOCK Cpt", "FUNCTION_BLOCK Cpt", KEYS, Some(DFB)),
             ("PROGRAM = x ADDRESS = nonsense", "PROGRAM", "MAST - MAIN", ST, None),

@@ -160,6 +160,12 @@ kinds! {
     /// A symbol, with an optional `.item`.
     NameRef,
     Index,
+    /// `RUNG ... END_RUNG`.
+    Rung,
+    /// One row of a rung, with its `;`.
+    RungRow,
+    /// `OPEN_CONTACT(%I1.0)`, `COMPARE ... END_BLOCK`.
+    Cell,
 
     // Chart nodes: pages of Grafcet and textual SFC.
     /// `NB_PAGES = 8`.
@@ -185,8 +191,6 @@ kinds! {
     ChartComment,
     /// `(C 4,L 3)`.
     PageCell,
-    /// Code of an action or a receptivity in a language that is not read.
-    UnreadCode,
 
     // Exchange container nodes.
     ExchangeBlock,

@@ -36,6 +36,8 @@ pub enum Language {
     Pl7Il,
     /// PL7 structured text.
     Pl7St,
+    /// PL7 ladder, as exchange files write it.
+    Pl7Ld,
     /// PL7 Grafcet: a page of a chart in the exchange form, with the code of its actions and receptivities.
     Pl7Gr7,
     /// IEC 61131-3 sequential function chart as text, with PL7 code.
@@ -51,6 +53,7 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Pl7Il => pl7::parse_il(text),
         Language::Pl7St => pl7::parse_st(text),
         Language::Pl7Gr7 | Language::Sfc => pl7::parse_chart(text),
+        Language::Pl7Ld => pl7::parse_ld(text),
         Language::Exchange => exchange::parse(text),
     }
 }

@@ -2,6 +2,7 @@
 
 mod awl;
 mod builder;
+mod chart;
 mod il;
 mod pl7;
 mod st;
@@ -19,8 +20,14 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
-        Language::Pl7Gr7 | Language::Sfc | Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
+        Language::Pl7Gr7 | Language::Sfc => chart::lower(root, text, entity, language),
+        Language::Pl7Ld | Language::Exchange => empty(entity, language),
     }
+}
+
+/// The model of a unit without code.
+fn empty(entity: Entity, language: Language) -> UnitModel {
+    builder::Builder::new(entity, language, TextRange::default()).finish()
 }
 
 #[cfg(test)]

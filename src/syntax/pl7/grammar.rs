@@ -1,4 +1,4 @@
-//! What the grammars of the two languages share: errors, depth, recovery, the frame of a unit and its sentences.
+//! What the grammars of the languages share: errors, depth, recovery, the frame of a unit and its sentences.
 
 use SyntaxKind::{
     Bang, CharString, Colon, Comma, Elision, Error, Heading, Ident, LBrack, LParen, LabelAddress, LabelDef, Minus,
@@ -16,6 +16,7 @@ use crate::syntax::{MAX_DEPTH, Marker, Parse, Parser, SyntaxKind};
 pub(super) enum Dialect {
     Il,
     St,
+    Ld,
 }
 
 /// How many control structures of each kind are open.
@@ -70,6 +71,7 @@ fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
     let words: Vec<_> = (0..)
         .map_while(|n| parser.nth(n).map(|kind| (n, kind)))
         .map(|(n, kind)| if kind == Ident { Keyword::of(parser.nth_text(n)) } else { None })
+        .map(|word| word.filter(|it| !it.is_of_ladder() || is_chart || dialect == Dialect::Ld))
         .collect();
     let stops = if is_chart { chart::stops(&parser) } else { Vec::new() };
     let state = State {
@@ -95,7 +97,7 @@ fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
 }
 
 impl<'t> Grammar<'_, 't> {
-    /// unit = (heading | program line | sentence)*
+    /// unit = (heading | program line | sentence | rung)*
     fn unit(&mut self) {
         if self.at_task_line() {
             self.heading();
@@ -109,6 +111,10 @@ impl<'t> Grammar<'_, 't> {
             } else if self.p.at(SentenceEnd) {
                 self.error("`(*END_PHRASE*)` without `(*PHRASE*)`");
                 self.bump_error();
+            } else if self.at_keyword(Keyword::Rung) {
+                self.rungs();
+            } else if self.state.dialect == Dialect::Ld {
+                self.between_rungs();
             } else {
                 self.sentence();
             }
@@ -151,7 +157,7 @@ impl<'t> Grammar<'_, 't> {
                 Some(Ident) if self.at_heading() || self.at_program_line() || self.at_stop() => break,
                 Some(_) => match self.state.dialect {
                     Dialect::Il => self.instruction(&mut content),
-                    Dialect::St => {
+                    Dialect::St | Dialect::Ld => {
                         self.statement(!content.has_code);
                         content.has_code = true;
                     }
@@ -268,7 +274,9 @@ impl<'t> Grammar<'_, 't> {
     pub(super) fn at_boundary(&self) -> bool {
         match self.p.current() {
             None | Some(Bang | SentenceStart | SentenceEnd) => true,
-            Some(Ident) => self.at_program_line() || self.at_stop(),
+            Some(Ident) => {
+                self.keyword().is_some_and(Keyword::is_of_ladder) || self.at_program_line() || self.at_stop()
+            }
             _ => false,
         }
     }
@@ -438,6 +446,7 @@ impl<'t> Grammar<'_, 't> {
             && match self.state.dialect {
                 Dialect::Il => true,
                 Dialect::St => self.at_statement_start(),
+                Dialect::Ld => false,
             }
     }
 

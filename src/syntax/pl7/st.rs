@@ -283,9 +283,7 @@ impl Grammar<'_, '_> {
         if self.state.next_end < here || !self.state.is_scanned {
             let is_end = |n: usize| match self.p.nth(n) {
                 Some(Semicolon | Bang | SentenceStart | SentenceEnd | LabelAddress) | None => true,
-                Some(Ident) => {
-                    self.nth_stops(n) || self.p.nth_newline_before(n) && is_end_word(self.nth_keyword(n))
-                }
+                Some(Ident) => self.nth_stops(n) || self.p.nth_newline_before(n) && is_end_word(self.nth_keyword(n)),
                 Some(_) => false,
             };
             // The place is kept, so that however many sentences ask, each token is looked at once.

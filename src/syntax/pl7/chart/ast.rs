@@ -2,7 +2,7 @@
 
 use super::word::Word;
 use crate::syntax::node::nodes;
-use crate::syntax::pl7::ast::{Sentence, Stmt};
+use crate::syntax::pl7::ast::{Rung, Sentence, Stmt};
 use crate::syntax::{AstChildren, AstNode as _, SyntaxElement, SyntaxKind, SyntaxToken};
 
 /// Which step.
@@ -108,8 +108,6 @@ nodes! {
     Connector,
     ChartComment,
     PageCell,
-    /// Code in a language that is not read.
-    UnreadCode,
 }
 
 impl PageCount<'_> {
@@ -191,9 +189,8 @@ impl<'t> ChartAction<'t> {
         self.children()
     }
 
-    /// Code in a language that is not read.
-    pub fn unread(self) -> Option<UnreadCode<'t>> {
-        self.child()
+    pub fn rungs(self) -> AstChildren<'t, Rung<'t>> {
+        self.children()
     }
 }
 
@@ -234,9 +231,8 @@ impl<'t> Transition<'t> {
         self.children()
     }
 
-    /// Code in a language that is not read.
-    pub fn unread(self) -> Option<UnreadCode<'t>> {
-        self.child()
+    pub fn rungs(self) -> AstChildren<'t, Rung<'t>> {
+        self.children()
     }
 
     /// Whether part of the code was not understood.

@@ -1,15 +1,16 @@
 //! Grammar of charts. The code of actions and receptivities is read by the grammars of its language.
 
 use SyntaxKind::{
-    Arrow, Assign, Association, Bang, PageCell, CharString, ChartAction, ChartComment, ChartLink, ChartStep, Colon, Comma,
-    Connector, Elision, Eq, Error, Ident, LBrack, LParen, LabelAddress, Number, ObjectAddress, Page, PageCount, RBrack,
-    RParen, Segment, Semicolon, SentenceEnd, SentenceStart, StepName, Transition, TransitionEnd, UnreadCode,
+    Arrow, Assign, Association, Bang, CharString, ChartAction, ChartComment, ChartLink, ChartStep, Colon, Comma,
+    Connector, Elision, Eq, Error, Ident, LBrack, LParen, LabelAddress, Number, ObjectAddress, Page, PageCell,
+    PageCount, RBrack, RParen, Segment, Semicolon, SentenceEnd, SentenceStart, StepName, Transition, TransitionEnd,
 };
 
 use super::ast::{ActionKind, CodeLanguage, StepKind};
 use super::word::Word;
 use crate::syntax::pl7::grammar::{Dialect, Grammar};
 use crate::syntax::pl7::instructions::IlOp;
+use crate::syntax::pl7::word::Keyword;
 use crate::syntax::{Parser, SyntaxKind};
 
 /// For each significant token: whether code of an action or a receptivity ends before it. A word alone is not enough,
@@ -203,11 +204,11 @@ impl<'t> Grammar<'_, 't> {
     /// `AT (C 4,L 3)`
     fn place(&mut self) {
         self.p.bump();
-        self.cell();
+        self.page_cell();
     }
 
     /// `(C 4,L 3)`
-    fn cell(&mut self) {
+    fn page_cell(&mut self) {
         if !self.p.at(LParen) {
             self.expected("a cell, such as `(C 4,L 3)`");
             return;
@@ -215,7 +216,9 @@ impl<'t> Grammar<'_, 't> {
         let m = self.p.start();
         let start = self.p.position();
         self.p.bump();
-        while matches!(self.p.current(), Some(Ident | Number | Comma)) && self.p.position() < start + 6 && !self.at_stop()
+        while matches!(self.p.current(), Some(Ident | Number | Comma))
+            && self.p.position() < start + 6
+            && !self.at_stop()
         {
             self.p.bump();
         }
@@ -451,10 +454,10 @@ impl<'t> Grammar<'_, 't> {
                 self.expected(name);
                 return;
             }
-            self.cell();
+            self.page_cell();
             while self.p.at(Comma) && self.p.nth(1) == Some(LParen) {
                 self.p.bump();
-                self.cell();
+                self.page_cell();
             }
         }
     }
@@ -514,7 +517,7 @@ impl<'t> Grammar<'_, 't> {
     /// The code of an action or a receptivity, up to where an element ends or starts.
     fn code(&mut self, language: Option<CodeLanguage>) {
         match language.unwrap_or_else(|| self.guess_language()) {
-            CodeLanguage::Ladder => self.unread_code(),
+            CodeLanguage::Ladder => self.ladder(),
             CodeLanguage::Il => self.sentences(Dialect::Il),
             CodeLanguage::St => self.sentences(Dialect::St),
         }
@@ -528,22 +531,23 @@ impl<'t> Grammar<'_, 't> {
         }
         let text = self.p.nth_text(n);
         let is_word = self.p.nth(n) == Some(Ident);
-        if is_word && text.eq_ignore_ascii_case("RUNG") {
+        if self.nth_keyword(n) == Some(Keyword::Rung) {
             return CodeLanguage::Ladder;
         }
         let has_operand = matches!(self.p.nth(n + 1), Some(ObjectAddress | Ident | LBrack | Number));
         if is_word && IlOp::of_word(text).is_some() && has_operand { CodeLanguage::Il } else { CodeLanguage::St }
     }
 
-    fn unread_code(&mut self) {
-        if self.at_stop() || self.at_chart_end() {
-            return;
-        }
-        let m = self.p.start();
+    fn ladder(&mut self) {
         while !self.at_stop() && !self.at_chart_end() {
-            self.p.bump();
+            self.state.muted = false;
+            if self.at_keyword(Keyword::Rung) {
+                self.rungs();
+            } else {
+                self.expected("`RUNG`");
+                self.skip_to(|g| g.at_keyword(Keyword::Rung));
+            }
         }
-        self.p.complete(m, UnreadCode);
     }
 
     fn sentences(&mut self, dialect: Dialect) {

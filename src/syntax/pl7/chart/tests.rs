@@ -102,10 +102,8 @@ fn a_textual_chart_is_read() {
     let parse = parse(TEXTUAL);
     assert_eq!(parse.errors(), []);
     let steps = all::<ChartStep>(&parse);
-    let associations: Vec<_> = steps[1]
-        .associations()
-        .map(|it| (it.target().map(|it| it.text().to_owned()), it.kind()))
-        .collect();
+    let associations: Vec<_> =
+        steps[1].associations().map(|it| (it.target().map(|it| it.text().to_owned()), it.kind())).collect();
     assert_eq!(
         associations,
         [
@@ -137,23 +135,25 @@ fn an_unknown_word_is_one_error_and_the_rest_is_read() {
 
 #[test]
 fn symbols_may_be_called_like_words_of_charts() {
-    let text = "STEP 1 : ACTION (N1,ST) : Step := Action OR Page; Comment := Transition(%M0) AND Step; END_ACTION END_STEP";
+    let text =
+        "STEP 1 : ACTION (N1,ST) : Step := Action OR Page; Comment := Transition(%M0) AND Step; END_ACTION END_STEP";
     assert_eq!(errors(text), [""; 0]);
 }
 
 #[test]
 fn what_is_not_closed_ends_where_the_next_element_starts() {
     for (text, expected) in [
-        ("STEP 1 AT (C 0,L 1) :\nACTION (N1,ST) : %M0 := %M1;\nSTEP 2 AT (C 1,L 1) : END_STEP", vec![
-            "expected `END_ACTION` after this",
-            "expected `END_STEP` after this",
-        ]),
-        ("TRANSITION (ST) AT (C 0,L 2) : %M0\nSTEP 2 AT (C 1,L 1) : END_STEP", vec![
-            "expected `END_TRANSITION` after this",
-        ]),
+        (
+            "STEP 1 AT (C 0,L 1) :\nACTION (N1,ST) : %M0 := %M1;\nSTEP 2 AT (C 1,L 1) : END_STEP",
+            vec!["expected `END_ACTION` after this", "expected `END_STEP` after this"],
+        ),
+        (
+            "TRANSITION (ST) AT (C 0,L 2) : %M0\nSTEP 2 AT (C 1,L 1) : END_STEP",
+            vec!["expected `END_TRANSITION` after this"],
+        ),
         ("PAGE 0\nSTEP 2 AT (C 1,L 1) : END_STEP\n", vec!["expected `END_PAGE` after this"]),
         ("END_STEP", vec!["`END_STEP` belongs to nothing that is open"]),
-        ("T_S_OR_LINK FROM (C 4,L 4) TO", vec!["expected a cell, such as `(C 4,L 3)`, found `the end`"]),
+        ("T_S_OR_LINK FROM (C 4,L 4) TO", vec!["expected a cell, such as `(C 4,L 3)` after this"]),
         ("MACRO_STEP 2 AT (C 0,L 1)\nIN_STEP AT (C 1,L 1)\nOUT_STEP AT (C 1,L 3) : END_STEP\n", vec![]),
     ] {
         assert_eq!(errors(text), expected, "{text}");
@@ -162,16 +162,18 @@ fn what_is_not_closed_ends_where_the_next_element_starts() {
 
 #[test]
 fn code_without_its_language_is_told_apart() {
-    for (text, sentences, unread) in [
-        ("TRANSITION AT (C 0,L 2) : ! LD %M0 AND %M1 END_TRANSITION", 1, false),
-        ("TRANSITION AT (C 0,L 2) : %M0 AND %M1 END_TRANSITION", 1, false),
-        ("TRANSITION AT (C 0,L 2) : END_TRANSITION", 0, false),
-        ("TRANSITION (LD) AT (C 0,L 2) : END_TRANSITION", 0, false),
+    for (text, sentences, rungs) in [
+        ("TRANSITION AT (C 0,L 2) : ! LD %M0 AND %M1 END_TRANSITION", 1, 0),
+        ("TRANSITION AT (C 0,L 2) : %M0 AND %M1 END_TRANSITION", 1, 0),
+        ("TRANSITION AT (C 0,L 2) : END_TRANSITION", 0, 0),
+        ("TRANSITION (LD) AT (C 0,L 2) : END_TRANSITION", 0, 0),
+        ("TRANSITION (LD) AT (C 0,L 2) : RUNG OPEN_CONTACT(%M0),H_LINK(9),HASH_COIL; END_RUNG END_TRANSITION", 0, 1),
+        ("TRANSITION AT (C 0,L 2) : RUNG OPEN_CONTACT(%M0),H_LINK(9),HASH_COIL; END_RUNG END_TRANSITION", 0, 1),
     ] {
         let parse = parse(text);
         assert_eq!(parse.errors(), [], "{text}");
         let [transition] = all::<Transition>(&parse)[..] else { panic!("{text}") };
-        assert_eq!((transition.sentences().count(), transition.unread().is_some()), (sentences, unread), "{text}");
+        assert_eq!((transition.sentences().count(), transition.rungs().count()), (sentences, rungs), "{text}");
     }
 }
 
