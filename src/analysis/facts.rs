@@ -7,6 +7,7 @@ use std::hash::BuildHasher as _;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
+use super::chart::ChartFacts;
 use super::conditions;
 use crate::model::UnitModel;
 use crate::model::entity::{BlockName, Entity};
@@ -114,6 +115,8 @@ pub struct UnitFacts {
     pub writes_indirectly: bool,
     /// The unit, or some of it, was not understood: what seems to be missing may stand there.
     pub has_gaps: bool,
+    /// What the unit holds of a chart.
+    pub chart: Option<Box<ChartFacts>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -202,6 +205,7 @@ impl UnitFacts {
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
+            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it))),
         }
     }
 }

@@ -102,10 +102,6 @@ pub struct Cell {
 }
 
 impl Cell {
-    fn above(self) -> Option<Self> {
-        Some(Self { line: self.line.checked_sub(1)?, ..self })
-    }
-
     fn below(self) -> Option<Self> {
         Some(Self { line: self.line.checked_add(1)?, ..self })
     }

@@ -46,6 +46,13 @@ pub enum Language {
     Exchange,
 }
 
+impl Language {
+    /// Whether the text is a chart, which holds code of other languages.
+    pub fn is_chart(self) -> bool {
+        matches!(self, Self::Pl7Gr7 | Self::Sfc)
+    }
+}
+
 /// Parses one unit. Total and linear for every text.
 pub fn parse(language: Language, text: &str) -> Parse {
     match language {

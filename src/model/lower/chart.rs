@@ -517,3 +517,162 @@ fn cell(it: ast::PageCell<'_>, page: Option<u32>) -> Option<Cell> {
     let (column, line) = it.place()?;
     Some(Cell { page, column, line })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::lower::testing::show;
+    use crate::model::unit::OddityKind;
+    use crate::source::entity_from_address;
+    use crate::syntax;
+
+    fn unit(address: &str, text: &str, language: Language) -> UnitModel {
+        let parse = syntax::parse(language, text);
+        assert_eq!(parse.errors(), [], "{text}");
+        let entity = entity_from_address(address).unwrap_or_else(|| panic!("{address}"));
+        crate::model::lower::lower(parse.syntax(), text, entity, language)
+    }
+
+    fn page(text: &str) -> UnitModel {
+        unit("MAST - P - CHART - PAGE 0", text, Language::Pl7Gr7)
+    }
+
+    fn chart(model: &UnitModel) -> &Chart {
+        model.chart.as_deref().expect("a chart")
+    }
+
+    /// Each transition as `0,1 -> 2`; a connector in brackets.
+    fn transitions(model: &UnitModel) -> Vec<String> {
+        let chart = chart(model);
+        let name = |node: &Node| {
+            let name = chart.name_of(node).map_or_else(|| "?".to_owned(), StepName::to_string);
+            if matches!(node, Node::Connector(_)) { format!("[{name}]") } else { name }
+        };
+        let list = |nodes: &[Node]| nodes.iter().map(name).collect::<Vec<_>>().join(",");
+        chart.transitions.iter().map(|it| format!("{} -> {}", list(&it.sources), list(&it.targets))).collect()
+    }
+
+    /// Each statement that writes: `path: object mode`.
+    fn writes(model: &UnitModel) -> Vec<String> {
+        model
+            .accesses
+            .iter()
+            .filter(|it| it.mode.writes())
+            .map(|it| {
+                let path = model.statement(it).map_or_else(String::new, |it| show(model, it.path));
+                format!("{path}: {} {}", model.object(it.object).text, it.mode.verb())
+            })
+            .collect()
+    }
+
+    const STEP: &str = "END_STEP\n";
+    const TRUE: &str = ": (*PHRASE*) %I1.0 (*END_PHRASE*) END_TRANSITION\n";
+
+    #[test]
+    fn neighbours_are_joined_without_a_link() {
+        let text = format!(
+            "PAGE 0\nSOURCE_CONNECTOR 9 AT (C 0,L 0)\nSTEP 1 AT (C 0,L 1) : {STEP}TRANSITION (ST) AT (C 0,L 2) {TRUE}\
+             MACRO_STEP 2 AT (C 0,L 3)\nTRANSITION (ST) AT (C 0,L 4) {TRUE}DEST_CONNECTOR 5 AT (C 0,L 5)\n\
+             STEP 3 AT (C 1,L 1) : {STEP}TRANSITION (ST) AT (C 2,L 2) {TRUE}END_PAGE\n"
+        );
+        let model = page(&text);
+        assert_eq!(transitions(&model), ["1 -> M2", "M2 -> [5]", " -> "]);
+        assert_eq!(chart(&model).connectors[0].steps, [0]);
+    }
+
+    #[test]
+    fn links_join_what_they_reach() {
+        // An OR divergence of two branches, an AND divergence, and back to the first step.
+        let text = format!(
+            "PAGE 0\nINITIAL_STEP 0 AT (C 0,L 1) : {STEP}TRANSITION (ST) AT (C 0,L 2) {TRUE}\
+             TRANSITION (ST) AT (C 1,L 2) {TRUE}STEP 1 AT (C 0,L 3) : {STEP}STEP 2 AT (C 1,L 3) : {STEP}\
+             STEP 3 AT (C 2,L 3) : {STEP}TRANSITION (ST) AT (C 0,L 4) {TRUE}\
+             S_T_OR_LINK FROM (C 0,L 1) TO (C 1,L 2)\nT_S_AND_LINK FROM (C 1,L 2) TO (C 2,L 3)\n\
+             T_S_OR_LINK FROM (C 0,L 4) TO (C 0,L 1) := [H_LINK FROM (C 0,L 4) TO (C 5,L 4)]\n\
+             S_T_AND_LINK FROM (C 1,L 3), (C 2,L 3) TO (C 0,L 4)\nT_S_OR_LINK FROM (C 7,L 7) TO (C 0,L 1)\nEND_PAGE\n"
+        );
+        let model = page(&text);
+        assert_eq!(transitions(&model), ["0 -> 1", "0 -> 2,3", "1,2,3 -> 0"]);
+        let junctions = chart(&model).junctions();
+        let kinds: Vec<_> = junctions.iter().map(|it| (it.kind, it.branches.len())).collect();
+        assert_eq!(kinds, [(LinkKind::OrDivergence, 2), (LinkKind::AndDivergence, 2), (LinkKind::AndConvergence, 3)]);
+        let joined: Vec<bool> = chart(&model).links.iter().map(|it| it.is_joined).collect();
+        assert_eq!(joined, [true, true, true, true, false]);
+    }
+
+    #[test]
+    fn actions_run_under_their_steps() {
+        let text = format!(
+            "PAGE 0\nSTEP 3 AT (C 0,L 1) :\nACTION (N1,ST) : ! %Q2.0 := %I1.0; END_ACTION\n\
+             ACTION (P1,IL) : ! LD %I1.2 S %M5 END_ACTION\nACTION (P0,ST) : ! RESET %M5; END_ACTION\n{STEP}\
+             TRANSITION (IL) AT (C 0,L 2) : ! LD %M7 AND [%MW0>5] END_TRANSITION\nEND_PAGE\n"
+        );
+        let model = page(&text);
+        assert_eq!(writes(&model), ["v%X3: %M5 reset", "^%X3: %M5 set", "%X3: %Q2.0 assigned"]);
+        let Receptivity::Value(value) = chart(&model).transitions[0].receptivity else { panic!("a value") };
+        assert_eq!(show(&model, value), "(%M7 & (%MW0 > 5))");
+        // Tests that no action uses are what a receptivity is.
+        assert!(!model.oddities.iter().any(|it| it.kind == OddityKind::TestWithoutAction));
+        // The step's bit is looked at by the controller, not by the program.
+        assert!(!model.accesses.iter().any(|it| model.object(it.object).text == "%X3"));
+    }
+
+    #[test]
+    fn labels_belong_to_their_action() {
+        let action = "ACTION (P1,ST) : (*PHRASE*) %L1: IF %M0 THEN JUMP %L2; END_IF; (*END_PHRASE*)\n\
+                      (*PHRASE*) %L2: INC %MW0; (*END_PHRASE*) END_ACTION\n";
+        let text =
+            format!("PAGE 0\nSTEP 1 AT (C 0,L 1) :\n{action}{STEP}STEP 2 AT (C 1,L 1) :\n{action}{STEP}END_PAGE\n");
+        let model = page(&text);
+        let targets: Vec<_> = model.jumps.iter().map(|it| (it.part, it.target)).collect();
+        assert_eq!(targets.len(), 2);
+        assert!(targets.iter().all(|&(part, target)| target.is_some_and(|it| model.labels[it as usize].part == part)));
+        assert_ne!(targets[0].1, targets[1].1);
+        assert_eq!(model.unreachable, []);
+    }
+
+    #[test]
+    fn receptivities_that_are_missing() {
+        let receptivity = |code: &str| {
+            let model = page(&format!("PAGE 0\nTRANSITION (ST) AT (C 0,L 2) : {code} END_TRANSITION\nEND_PAGE\n"));
+            chart(&model).transitions[0].receptivity
+        };
+        assert_eq!(receptivity(""), Receptivity::Missing);
+        assert_eq!(receptivity("(*PHRASE*) (*END_PHRASE*)"), Receptivity::Missing);
+        assert_eq!(receptivity("(*PHRASE*) TRUE (*END_PHRASE*)"), Receptivity::Value(Exprs::TRUE));
+        assert_eq!(receptivity("(*PHRASE*) %M0 := %M1; (*END_PHRASE*)"), Receptivity::Unread);
+    }
+
+    #[test]
+    fn a_textual_chart_fills_the_same_model() {
+        let text = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); %Q2.1(N); %M3(S); END_STEP\n\
+                    STEP Wait : Fill(N); %Q2.1(N); END_STEP\nTRANSITION FROM X0 TO (X1,Wait) := %MW1 = 5; END_TRANSITION\n\
+                    TRANSITION FROM (X1,Wait) TO X9 : ! LD %I1.0 END_TRANSITION\nACTION Fill : %Q2.0 := TRUE; END_ACTION\n";
+        let model = unit("MAST - CHART", text, Language::Sfc);
+        assert_eq!(transitions(&model), ["0 -> 1,wait", "1,wait -> 9"]);
+        assert_eq!(chart(&model).transitions[1].targets, [Node::Named(StepName::Number(9))]);
+        let Receptivity::Value(value) = chart(&model).transitions[0].receptivity else { panic!("a value") };
+        assert_eq!(show(&model, value), "(%MW1 = 5)");
+        assert_eq!(writes(&model), ["(%X1 | wait.X): %Q2.0 assigned", "true: %Q2.1 assigned", "true: %M3 set"]);
+        let value = model.statements.iter().find_map(|it| match it.kind {
+            StatementKind::Assign { value, .. } if it.path == Exprs::TRUE => Some(show(&model, value)),
+            _ => None,
+        });
+        assert_eq!(value.as_deref(), Some("(%X1 | wait.X)"));
+    }
+
+    #[test]
+    fn a_piece_under_its_own_heading_runs_under_its_step() {
+        let path = |address: &str, text: &str, language| {
+            let model = unit(address, text, language);
+            writes(&model).join("; ")
+        };
+        let heading = "MAST - P - CHART - PAGE 0 %X1 P1";
+        assert_eq!(path(heading, "! %M0 := TRUE;", Language::Pl7St), "^%X1: %M0 assigned");
+        assert_eq!(path(heading, "! LD %M1\nST %M0", Language::Pl7Il), "^%X1: %M0 assigned");
+        assert_eq!(
+            path("MAST - P - MACRO2 - PAGE 0 %X2.1 N1", "! %M0 := TRUE;", Language::Pl7St),
+            "%X2.1: %M0 assigned"
+        );
+    }
+}
