@@ -47,6 +47,8 @@ fn examples(rule: &Rule) -> Vec<Example> {
                 "il" => Dialect::Pl7Il,
                 "st" => Dialect::Pl7St,
                 "pl7" => Dialect::Pl7,
+                "gr7" => Dialect::Pl7Gr7,
+                "sfc" => Dialect::Sfc,
                 other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
             };
             assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
@@ -104,6 +106,7 @@ fn every_dialect_has_its_examples() {
                 "s7" => &[Dialect::Step7],
                 "il" => &[Dialect::Pl7Il],
                 "st" => &[Dialect::Pl7St],
+                "g7" => &[Dialect::Pl7Gr7],
                 // Read in a later version.
                 "s5" | "pl72" | "ld" => &[],
                 other => panic!("{}: dialect `{other}`", rule.name),

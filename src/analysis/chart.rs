@@ -10,7 +10,7 @@ use smol_str::SmolStr;
 
 use super::Site;
 use super::facts::{UnitFacts, Use};
-use crate::model::chart::{self, ActionKind, ConnectorKind, Graph, Node, StepKind, StepName};
+use crate::model::chart::{self, ActionKind, CodeLanguage, ConnectorKind, Graph, Node, StepKind, StepName};
 use crate::model::entity::{Entity, Task};
 use crate::model::object::{Area, Footprint};
 
@@ -24,6 +24,10 @@ pub struct ChartFacts {
     pub actions: Vec<FactAction>,
     /// Whether the text defines steps, and does not only show the code of one.
     pub defines: bool,
+    /// Number of the page, where the unit is one.
+    pub page: Option<u32>,
+    /// Some of the text was not understood.
+    pub has_gaps: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,12 +67,14 @@ pub struct FactAction {
     /// Steps that run it, as indices, sorted.
     pub steps: Vec<u32>,
     pub kind: Option<ActionKind>,
+    /// Of its code; `None` where there is none, or a heading says it.
+    pub language: Option<CodeLanguage>,
     /// Places that its code names.
     pub anchors: Range<u32>,
 }
 
 impl ChartFacts {
-    pub fn new(chart: &chart::Chart) -> Self {
+    pub fn new(chart: &chart::Chart, entity: &Entity) -> Self {
         let sorted = |steps: &[u32]| {
             let mut steps = steps.to_vec();
             steps.sort_unstable();
@@ -77,7 +83,12 @@ impl ChartFacts {
         let mut actions: Vec<FactAction> = chart
             .actions
             .iter()
-            .map(|it| FactAction { steps: sorted(&it.steps), kind: it.kind, anchors: it.anchors.clone() })
+            .map(|it| FactAction {
+                steps: sorted(&it.steps),
+                kind: it.kind,
+                language: it.language,
+                anchors: it.anchors.clone(),
+            })
             .collect();
         actions.sort_by_key(|it| it.anchors.start);
         Self {
@@ -110,14 +121,15 @@ impl ChartFacts {
                 .collect(),
             actions,
             defines: chart.steps.iter().any(|it| it.anchor != 0),
+            page: chart::place(entity).and_then(|it| it.page),
+            has_gaps: false,
         }
     }
 
     /// The action whose code holds a place.
-    fn action_at(&self, anchor: u32) -> Option<&FactAction> {
+    pub fn action_at(&self, anchor: u32) -> Option<&FactAction> {
         let after = self.actions.partition_point(|it| it.anchors.start <= anchor);
-        // Actions without any place share the start of the next one.
-        self.actions[..after].iter().rev().take(1).find(|it| it.anchors.contains(&anchor))
+        self.actions[..after].last().filter(|it| it.anchors.contains(&anchor))
     }
 
     fn names(&self, action: &FactAction) -> impl Iterator<Item = &StepName> {
@@ -189,10 +201,19 @@ pub struct Connector<'a> {
 }
 
 impl Connector<'_> {
-    /// Pairs of steps that it joins; of a connector with many steps on both sides, which is none, the first.
-    fn joins(&self) -> impl Iterator<Item = (u32, u32)> {
+    pub fn name(&self) -> Option<&StepName> {
+        self.it.name.as_ref()
+    }
+
+    /// Pairs of steps that it joins; `None` stands for a side that is joined with nothing. Of a connector with many steps
+    /// on both sides, which is none, the first.
+    fn joins(&self) -> impl Iterator<Item = (Option<u32>, Option<u32>)> {
         const MOST: usize = 64;
-        self.from.iter().take(MOST).flat_map(|&from| self.to.iter().take(MOST).map(move |&to| (from, to)))
+        let side = |steps: &[u32]| -> Vec<Option<u32>> {
+            if steps.is_empty() { vec![None] } else { steps.iter().take(MOST).copied().map(Some).collect() }
+        };
+        let to = side(&self.to);
+        side(&self.from).into_iter().flat_map(move |from| to.clone().into_iter().map(move |to| (from, to)))
     }
 
     pub fn site(&self) -> Site {
@@ -210,9 +231,11 @@ pub struct Chart<'a> {
     pub steps: Vec<Step<'a>>,
     pub transitions: Vec<Transition<'a>>,
     pub connectors: Vec<Connector<'a>>,
-    /// Some of its units were not understood in full.
+    /// Some of its text was not understood, or a page is missing between others: what is absent may be there.
     pub has_gaps: bool,
     by_name: FxHashMap<&'a StepName, u32>,
+    /// Connectors that are joined on one side alone.
+    loose: FxHashSet<(ConnectorKind, Option<u32>, Option<u32>)>,
 }
 
 impl<'a> Chart<'a> {
@@ -237,19 +260,27 @@ impl<'a> Chart<'a> {
     }
 
     /// Connectors without the other one of their pair (PL7:4392): one of the other kind that goes on from the same step to
-    /// the same step.
+    /// the same step. What a connector is not joined with, because it is misplaced, is not asked for.
     pub fn unpaired(&self) -> impl Iterator<Item = &Connector<'a>> {
-        let mut joins: FxHashSet<(ConnectorKind, u32, u32)> = FxHashSet::default();
+        let mut joins: FxHashSet<(ConnectorKind, Option<u32>, Option<u32>)> = FxHashSet::default();
         for it in &self.connectors {
-            joins.extend(it.joins().map(|(from, to)| (it.it.kind, from, to)));
+            for (from, to) in it.joins() {
+                joins.extend([(from, to), (None, to), (from, None)].map(|(from, to)| (it.it.kind, from, to)));
+            }
         }
         let other = |kind| match kind {
             ConnectorKind::Origin => ConnectorKind::Destination,
             ConnectorKind::Destination => ConnectorKind::Origin,
         };
-        self.connectors
-            .iter()
-            .filter(move |it| !it.joins().any(|(from, to)| joins.contains(&(other(it.it.kind), from, to))))
+        self.connectors.iter().filter(move |it| {
+            let kind = other(it.it.kind);
+            let is_met = |(from, to): (Option<u32>, Option<u32>)| {
+                // The other one may be the misplaced one.
+                let loose = [(kind, from, None), (kind, None, to)];
+                joins.contains(&(kind, from, to)) || loose.iter().any(|it| self.loose.contains(it))
+            };
+            it.name().is_none_or(|name| self.step_named(name).is_none()) || !it.joins().any(is_met)
+        })
     }
 }
 
@@ -271,6 +302,7 @@ fn step_name(graph: Graph, number: u32) -> Option<StepName> {
 /// The charts of a program, in the order of their first units.
 pub fn join<'a>(units: &[&'a UnitFacts]) -> Vec<Chart<'a>> {
     let mut charts: Vec<Chart<'a>> = Vec::new();
+    let mut pages: Vec<Vec<u32>> = Vec::new();
     let mut index: FxHashMap<(Task, Option<&SmolStr>, Graph), usize> = FxHashMap::default();
     let mut parts: Vec<(usize, u32, &'a ChartFacts, usize)> = Vec::new();
     for (unit, facts) in (0..).zip(units) {
@@ -279,6 +311,7 @@ pub fn join<'a>(units: &[&'a UnitFacts]) -> Vec<Chart<'a>> {
             continue;
         }
         let at = *index.entry((task, section, part.graph)).or_insert_with(|| {
+            pages.push(Vec::new());
             charts.push(Chart {
                 task,
                 section,
@@ -288,11 +321,13 @@ pub fn join<'a>(units: &[&'a UnitFacts]) -> Vec<Chart<'a>> {
                 connectors: Vec::new(),
                 has_gaps: false,
                 by_name: FxHashMap::default(),
+                loose: FxHashSet::default(),
             });
             charts.len() - 1
         });
         let chart = &mut charts[at];
-        chart.has_gaps |= facts.has_gaps;
+        chart.has_gaps |= part.has_gaps;
+        pages[at].extend(part.page);
         let first = chart.steps.len();
         for it in &part.steps {
             if let Some(name) = &it.name {
@@ -302,6 +337,11 @@ pub fn join<'a>(units: &[&'a UnitFacts]) -> Vec<Chart<'a>> {
             chart.steps.push(Step { unit, it });
         }
         parts.push((at, unit, part, first));
+    }
+    for (chart, mut pages) in charts.iter_mut().zip(pages) {
+        pages.sort_unstable();
+        pages.dedup();
+        chart.has_gaps |= pages.last().is_some_and(|&last| last as usize >= pages.len());
     }
     // Ends are looked up when all pages are there.
     for (at, unit, part, first) in parts {
@@ -348,6 +388,9 @@ pub fn join<'a>(units: &[&'a UnitFacts]) -> Vec<Chart<'a>> {
                     connector.from.extend(&transition.sources);
                 }
             }
+        }
+        for it in connectors.iter().filter(|it| it.from.is_empty() != it.to.is_empty()) {
+            charts[at].loose.extend(it.joins().map(|(from, to)| (it.it.kind, from, to)));
         }
         charts[at].connectors.extend(connectors);
         charts[at].transitions.extend(transitions);

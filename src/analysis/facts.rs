@@ -10,6 +10,7 @@ use smol_str::SmolStr;
 use super::chart::ChartFacts;
 use super::conditions;
 use crate::model::UnitModel;
+use crate::model::chart::CodeLanguage;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
@@ -126,6 +127,14 @@ const MAX_COMPARED: usize = 48;
 const MAX_COMPARISONS: u32 = 1000;
 
 impl UnitFacts {
+    /// Whether a place is one of structured text.
+    pub fn is_structured_text(&self, anchor: u32) -> bool {
+        match self.chart.as_ref().filter(|_| self.language.is_chart()) {
+            Some(chart) => chart.action_at(anchor).is_some_and(|it| it.language == Some(CodeLanguage::St)),
+            None => self.language == Language::Pl7St,
+        }
+    }
+
     pub fn new(model: &UnitModel) -> Self {
         let numbers = numbers(model);
         let mut given = Given { values: vec![None; model.accesses.len()], whens: vec![None; model.accesses.len()] };
@@ -205,7 +214,7 @@ impl UnitFacts {
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
-            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it))),
+            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity))),
         }
     }
 }

@@ -215,6 +215,7 @@ pub struct Chart {
     pub transitions: Vec<Transition>,
     pub connectors: Vec<Connector>,
     pub links: Vec<Link>,
+    /// In the order in which their code runs.
     pub actions: Vec<Action>,
 }
 
@@ -246,6 +247,12 @@ impl Chart {
             links: Vec::new(),
             actions: Vec::new(),
         }
+    }
+
+    /// The action whose code names a place.
+    pub fn action_at(&self, anchor: u32) -> Option<&Action> {
+        let after = self.actions.partition_point(|it| it.anchors.start <= anchor);
+        self.actions[..after].last().filter(|it| it.anchors.contains(&anchor))
     }
 
     /// Joins vertical neighbours, and what links join.

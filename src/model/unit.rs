@@ -9,7 +9,7 @@ use rowan::TextRange;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
-use super::chart::Chart;
+use super::chart::{Chart, CodeLanguage};
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::literal::{LiteralError, Value};
@@ -490,6 +490,14 @@ impl UnitModel {
 
     pub fn statement(&self, access: &Access) -> Option<&Statement> {
         self.statements.get(access.statement as usize)
+    }
+
+    /// Whether an access is one of structured text.
+    pub fn is_structured_text(&self, access: &Access) -> bool {
+        match self.chart.as_ref().filter(|_| self.language.is_chart()) {
+            Some(chart) => chart.action_at(access.anchor).is_some_and(|it| it.language == Some(CodeLanguage::St)),
+            None => self.language == Language::Pl7St,
+        }
     }
 
     /// Place of an anchor; the heading when there is none.

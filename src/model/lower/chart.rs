@@ -47,7 +47,8 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: 
     }
     lowering.actions(|kind| !matches!(kind, Some(ActionKind::Deactivation | ActionKind::Activation)));
     lowering.bit_actions();
-    let Lowering { pl7, chart, .. } = lowering;
+    let Lowering { pl7, mut chart, .. } = lowering;
+    chart.actions.sort_by_key(|it| it.anchors.start);
     // The lowering gives it back after each piece of code.
     let Some(pl7) = pl7 else { return super::empty(Entity::Container, language) };
     let mut model = pl7.b.finish();
