@@ -188,7 +188,9 @@ impl<'t> Lowering<'t> {
     }
 
     fn element(&mut self, node: SyntaxNode<'t>, page: Option<u32>) {
-        if let Some(it) = ast::ChartStep::cast(node) {
+        if node.kind() == SyntaxKind::Error {
+            self.chart.has_gaps = true;
+        } else if let Some(it) = ast::ChartStep::cast(node) {
             self.step(it, page);
         } else if let Some(it) = ast::ChartAction::cast(node) {
             self.action(it, None);
