@@ -3,6 +3,7 @@
 mod awl;
 mod builder;
 mod il;
+mod ladder;
 mod pl7;
 mod st;
 
@@ -19,7 +20,8 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
-        Language::Pl7Ld | Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
+        Language::Pl7Ld => ladder::lower(root, text, entity),
+        Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
     }
 }
 
