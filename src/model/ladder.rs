@@ -104,6 +104,9 @@ pub struct Row<'t> {
     pub columns: u32,
     /// The cell that goes beyond the last column.
     pub excess: Option<Cell<'t>>,
+    /// The width of some block of it is not documented.
+    pub is_assumed: bool,
+    is_empty: bool,
     pub range: TextRange,
 }
 
@@ -165,6 +168,7 @@ impl<'t> Grid<'t> {
         let at = rows.units.len();
         let mut units = Vec::new();
         let mut excess = None;
+        let mut is_assumed = false;
         let mut lines = 1;
         for cell in row.cells() {
             let element = cell.element();
@@ -191,16 +195,19 @@ impl<'t> Grid<'t> {
                 }
                 _ => self.place(cell, element, at, &mut units),
             }
+            is_assumed |= element == Some(Element::Block) && width_of(Element::Block, cell) == block::COLUMNS.value;
             if units.len() > pl7::LADDER_COLUMNS.value as usize {
                 excess = excess.or(Some(cell));
             }
         }
         let columns = u32::try_from(units.len()).unwrap_or(u32::MAX);
         let range = row.syntax().text_range();
-        self.rows.push(Row { columns, excess, range });
+        let is_empty = row.cells().all(|it| matches!(it.element(), Some(Element::EmptyLine | Element::EmptyCell)));
+        self.rows.push(Row { columns, excess, is_assumed, is_empty, range });
         rows.units.push(units);
         for _ in 1..lines {
-            self.rows.push(Row { columns: pl7::LADDER_COLUMNS.value, excess: None, range });
+            let columns = pl7::LADDER_COLUMNS.value;
+            self.rows.push(Row { columns, excess: None, is_assumed: false, is_empty: true, range });
             rows.units.push(vec![Unit::Empty; pl7::LADDER_COLUMNS.value as usize]);
         }
     }
@@ -309,6 +316,12 @@ impl<'t> Grid<'t> {
         }
     }
 
+    /// Rows down to the last one that holds something.
+    pub fn lines_used(&self) -> u32 {
+        let last = self.rows.iter().rposition(|it| !it.is_empty);
+        last.map_or(0, |it| u32::try_from(it + 1).unwrap_or(u32::MAX))
+    }
+
     pub fn wire_count(&self) -> usize {
         self.wires.len()
     }
@@ -407,33 +420,53 @@ impl<'t> Grid<'t> {
             return;
         }
         for (index, wire) in self.wires.iter().enumerate().skip(1) {
-            let links = || wire.left.iter().filter(|&&it| self.placed[it as usize].is_link());
-            let Some(&link) = links().next() else { continue };
-            if wire.left.len() < 2 {
+            if wire.left.len() < 2 || !wire.left.iter().any(|&it| self.placed[it as usize].is_link()) {
                 continue;
             }
-            // Wires that this one has power with.
+            // Wires that give this one power through links alone, from right to left.
             let mut sources = vec![false; self.wires.len()];
             sources[index] = true;
-            let mut open = vec![index];
-            while let Some(at) = open.pop() {
-                for &it in &self.wires[at].left {
-                    let it = &self.placed[it as usize];
-                    for from in it.inputs.iter().filter(|_| it.is_link()) {
-                        if !std::mem::replace(&mut sources[from.0 as usize], true) {
-                            open.push(from.0 as usize);
+            let mut chain = vec![index];
+            let mut at = 0;
+            while let Some(&from) = chain.get(at) {
+                at += 1;
+                for it in self.links_left_of(from) {
+                    for input in &it.inputs {
+                        if !std::mem::replace(&mut sources[input.0 as usize], true) {
+                            chain.push(input.0 as usize);
                         }
                     }
                 }
             }
-            for &last in &wire.left {
-                let it = &self.placed[last as usize];
-                let is_test = it.element.is_some_and(Element::is_test) && !it.is_block();
-                if is_test && self.comes_from(last, &sources) {
-                    flaws.push((Flaw::Bypassed, it.range(), Some(self.placed[link as usize].range())));
+            // Those among them that serve nothing else.
+            let mut private = vec![false; self.wires.len()];
+            private[index] = true;
+            for _ in 0..pl7::LADDER_COLUMNS.value {
+                for &it in &chain {
+                    let serves = |right: &u32| {
+                        let right = &self.placed[*right as usize];
+                        right.is_link() && right.outputs.iter().all(|it| private[it.0 as usize])
+                    };
+                    private[it] = private[it] || it != 0 && self.wires[it].right.iter().all(serves);
+                }
+            }
+            for &end in chain.iter().filter(|it| private[**it]) {
+                for &last in &self.wires[end].left {
+                    let it = &self.placed[last as usize];
+                    let is_test = it.element.is_some_and(Element::is_test) && !it.is_block();
+                    if is_test && self.comes_from(last, &sources) {
+                        let wire = chain.iter().flat_map(|&it| self.links_left_of(it)).find(|link| {
+                            link.column == it.column && link.inputs.iter().all(|it| sources[it.0 as usize])
+                        });
+                        flaws.push((Flaw::Bypassed, it.range(), wire.map(Placed::range)));
+                    }
                 }
             }
         }
+    }
+
+    fn links_left_of(&self, wire: usize) -> impl Iterator<Item = &Placed<'t>> {
+        self.wires[wire].left.iter().map(|&it| &self.placed[it as usize]).filter(|it| it.is_link())
     }
 
     /// Whether all power of an element comes through one of the wires.
@@ -530,5 +563,107 @@ impl Sets {
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::pl7::ast::Root;
+
+    /// Runs a check on the grid of the rows.
+    fn with<T>(rows: &str, check: impl FnOnce(&Grid<'_>) -> T) -> T {
+        let parse = crate::syntax::pl7::parse_ld(&format!("RUNG\n{rows}\nEND_RUNG"));
+        assert_eq!(parse.errors(), [], "{rows}");
+        let rung = Root::cast(parse.syntax()).and_then(|it| it.rungs().next()).expect("a rung");
+        check(&Grid::new(rung))
+    }
+
+    /// Operands of each connected network in the order of evaluation.
+    fn order(rows: &str) -> Vec<String> {
+        with(rows, |grid| {
+            let name = |it: &usize| grid.placed[*it].cell.operand().map(|it| it.syntax().text().into_owned());
+            let text = |it: &Vec<usize>| {
+                let tests = it.iter().filter(|it| !grid.placed[**it].is_link());
+                tests.filter_map(name).collect::<Vec<_>>().join(" ")
+            };
+            grid.networks().iter().map(text).collect()
+        })
+    }
+
+    fn flaws(rows: &str) -> Vec<Flaw> {
+        with(rows, |grid| grid.flaws().into_iter().map(|it| it.0).collect())
+    }
+
+    #[test]
+    fn branches_are_evaluated_where_they_join() {
+        // PL7:2886-2895: A, B, C; then D; then E; then F and G; then the coil H.
+        let rows = "OPEN_CONTACT(A),OPEN_CONTACT(B),OPEN_CONTACT(C),SHORT_CIRCUIT,OPEN_CONTACT(E),SHORT_CIRCUIT(5),COIL(H);\n\
+                    OPEN_CONTACT(D),H_LINK(3),EMPTY_CELL(5),V_LINK,EMPTY_CELL;\n\
+                    OPEN_CONTACT(F),OPEN_CONTACT(G),H_LINK(8),EMPTY_CELL;";
+        assert_eq!(order(rows), ["A B C D E F G H"]);
+        assert_eq!(flaws(rows), []);
+    }
+
+    #[test]
+    fn networks_that_no_link_joins_are_apart() {
+        let rows = "OPEN_CONTACT(A),H_LINK(9),COIL(X);\nEMPTY_LINE;\n\
+                    OPEN_CONTACT(B),SHORT_CIRCUIT,H_LINK(8),COIL(Y);\nOPEN_CONTACT(C),H_LINK,EMPTY_CELL(9);";
+        assert_eq!(order(rows), ["A X", "B C Y"]);
+        // The rails join nothing.
+        assert_eq!(order("OPEN_CONTACT(A),H_LINK(9),COIL(X);\nOPEN_CONTACT(B),H_LINK(9),COIL(Y);"), ["A X", "B Y"]);
+    }
+
+    #[test]
+    fn blocks_have_a_wire_for_each_pin() {
+        let rows =
+            "P_CONTACT(R),BLOCK(%C8),EMPTY_CELL(7);\nEMPTY_CELL(4),H_LINK(6),COIL(D);\nOPEN_CONTACT(U),EMPTY_CELL(10);";
+        assert_eq!(order(rows), ["R U %C8 D"]);
+        with(rows, |grid| {
+            let block = grid.placed.iter().find(|it| it.is_block()).expect("a block");
+            let fed: Vec<bool> = block.inputs.iter().map(|it| grid.is_fed(*it)).collect();
+            let used: Vec<bool> = block.outputs.iter().map(|it| grid.is_used(*it)).collect();
+            assert_eq!((fed, used), (vec![true, false, true], vec![false, true, false]));
+        });
+        assert_eq!(flaws(rows), []);
+        // What stands in a row below ends the block.
+        let rows = "OPEN_CONTACT(R),BLOCK(%C8),EMPTY_CELL(7);\nOPEN_CONTACT(A),H_LINK(9),COIL(X);";
+        assert_eq!(with(rows, |grid| grid.placed[1].inputs.len()), 1);
+    }
+
+    #[test]
+    fn flaws_of_lines() {
+        assert_eq!(flaws("OPEN_CONTACT(A),H_LINK(9),COIL(X);"), []);
+        assert_eq!(flaws("OPEN_CONTACT(A),H_LINK(8),COIL(X),EMPTY_CELL;"), [Flaw::ActionInTestZone(10)]);
+        assert_eq!(flaws("H_LINK(10),OPEN_CONTACT(A);"), [Flaw::TestInActionZone(11)]);
+        assert_eq!(flaws("EMPTY_CELL,OPEN_CONTACT(A),H_LINK(8),COIL(X);"), [Flaw::NotFed]);
+        assert_eq!(flaws("EMPTY_CELL,H_LINK(3),EMPTY_CELL(7);"), [Flaw::NotFed]);
+        assert_eq!(flaws("OPEN_CONTACT(A),H_LINK(3),EMPTY_CELL(7);"), [Flaw::LeadsNowhere]);
+        assert_eq!(flaws("OPEN_CONTACT(A),SHORT_CIRCUIT(9),COIL(X);"), [Flaw::OpenLink]);
+        assert_eq!(flaws("V_LINK,EMPTY_CELL(10);\nH_LINK(10),COIL(X);"), [Flaw::OpenLink]);
+        assert_eq!(flaws("EMPTY_CELL(2),BLOCK(%TM0),EMPTY_CELL(7);"), [Flaw::BlockNotFed]);
+        assert_eq!(flaws("EMPTY_CELL(7),OPERATE %MW0:=1 END_BLOCK;"), [Flaw::BlockNotFed]);
+    }
+
+    #[test]
+    fn wires_that_go_round() {
+        let bypassed = |rows: &str| flaws(rows).contains(&Flaw::Bypassed);
+        assert!(bypassed("OPEN_CONTACT(A),SHORT_CIRCUIT,H_LINK(8),COIL(X);\nH_LINK(2),EMPTY_CELL(9);"));
+        assert!(bypassed(
+            "SHORT_CIRCUIT,OPEN_CONTACT(A),SHORT_CIRCUIT,H_LINK(7),COIL(X);\nEMPTY_CELL,H_LINK(2),EMPTY_CELL(8);"
+        ));
+        // The branch holds a contact too.
+        assert!(!bypassed("OPEN_CONTACT(A),SHORT_CIRCUIT,H_LINK(8),COIL(X);\nH_LINK,OPEN_CONTACT(B),EMPTY_CELL(9);"));
+        // Another line takes what the contact lets through.
+        assert!(!bypassed(
+            "OPEN_CONTACT(A),SHORT_CIRCUIT,OPEN_CONTACT(B),H_LINK(7),COIL(X);\nEMPTY_CELL(2),H_LINK(8),COIL(Y);"
+        ));
+    }
+
+    #[test]
+    fn numbers_beyond_reason_take_no_memory() {
+        let rows =
+            "H_LINK(4294967295),EMPTY_CELL(99999999999),COIL(X);\nEMPTY_LINE(4294967295);\nOPEN_CONTACT(A),COIL(Y);";
+        with(rows, |grid| assert!(grid.rows.len() < 64 && grid.placed.len() < 64));
     }
 }

@@ -397,3 +397,182 @@ impl Network {
         self.power[Grid::index(wire)] = pl7.b.exprs().or(before, value);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::Task;
+    use crate::model::lower::testing::show;
+
+    fn part(rungs: &str, part: Part) -> UnitModel {
+        let parse = crate::syntax::pl7::parse_ld(rungs);
+        assert_eq!(parse.errors(), [], "{rungs}");
+        lower(parse.syntax(), rungs, Entity::Pl7 { task: Task::Mast, section: None, part })
+    }
+
+    fn model(rows: &str) -> UnitModel {
+        part(&format!("RUNG\n{rows}\nEND_RUNG"), Part::Main)
+    }
+
+    /// What each statement does, with the path to it.
+    fn statements(rows: &str) -> Vec<String> {
+        let model = model(rows);
+        let name = |access: u32| model.object(model.accesses[access as usize].object).text.to_string();
+        let mut lines = Vec::new();
+        for it in &model.statements {
+            let what = match it.kind {
+                StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
+                    format!("{} := {}", name(access), show(&model, value))
+                }
+                StatementKind::Set { access, when } => format!("set {} when {}", name(access), show(&model, when)),
+                StatementKind::Reset { access, when } => format!("reset {} when {}", name(access), show(&model, when)),
+                StatementKind::Drive { access, pin, when, .. } => {
+                    format!("{} of {} when {}", pin.describe(), name(access), show(&model, when))
+                }
+                StatementKind::Call(call) => {
+                    let call = &model.calls[call as usize];
+                    format!("call {} when {}", call.text, show(&model, call.when))
+                }
+                StatementKind::Jump(jump) => format!("jump when {}", show(&model, model.jumps[jump as usize].when)),
+                StatementKind::Return { when, .. } => format!("return when {}", show(&model, when)),
+                StatementKind::Branch { condition } => format!("branch on {}", show(&model, condition)),
+                StatementKind::Halt => "halt".to_owned(),
+                _ => continue,
+            };
+            let path = show(&model, it.path);
+            lines.push(if path == "true" { what } else { format!("{path}: {what}") });
+        }
+        lines
+    }
+
+    fn flaws(model: &UnitModel) -> Vec<Flaw> {
+        let flaw = |it: &crate::model::unit::Oddity| match it.kind {
+            OddityKind::Ladder(flaw) => Some(flaw),
+            _ => None,
+        };
+        model.oddities.iter().filter_map(flaw).collect()
+    }
+
+    #[test]
+    fn power_flows_through_contacts_and_links() {
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),SHORT_CIRCUIT,CLOSED_CONTACT(%M1),H_LINK(7),COIL(%M5);\n\
+                 P_CONTACT(%M2),N_CONTACT(%M3),EMPTY_CELL(9);"
+            ),
+            ["%M5 := ((%M0 | (^%M2 & v%M3)) & !%M1)"]
+        );
+        // A link both ways: what comes from below serves the line above, and the other way round.
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),SHORT_CIRCUIT,OPEN_CONTACT(%M1),H_LINK(7),COIL(%M5);\n\
+                 OPEN_CONTACT(%M2),H_LINK,OPEN_CONTACT(%M3),H_LINK(7),NOT_COIL(%M6);"
+            ),
+            ["%M5 := ((%M0 | %M2) & %M1)", "%M6 := !((%M0 | %M2) & %M3)"]
+        );
+        assert_eq!(statements("EMPTY_CELL(10),COIL(%M5);"), ["%M5 := false"]);
+        assert_eq!(statements("OPEN_CONTACT(1),CLOSED_CONTACT(FALSE),H_LINK(8),COIL(%M5);"), ["%M5 := true"]);
+    }
+
+    #[test]
+    fn actions() {
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),SHORT_CIRCUIT(9),SET_COIL(%M5);\nEMPTY_CELL(9),V_LINK,RESET_COIL(%M6);\n\
+                 EMPTY_CELL(9),V_LINK,CALL_COIL(SR5);\nEMPTY_CELL(10),JUMP_COIL(%L10);"
+            ),
+            ["call SR5 when %M0", "set %M5 when %M0", "reset %M6 when %M0", "jump when %M0"]
+        );
+        assert_eq!(
+            statements("OPEN_CONTACT(%M0),H_LINK(9),RETURN_COIL;\nOPEN_CONTACT(%M1),H_LINK(9),HALT_COIL();"),
+            ["return when %M0", "!%M0: halt"]
+        );
+        assert_eq!(statements("OPEN_CONTACT(%M0),H_LINK(9),HASH_COIL;"), ["branch on %M0"]);
+    }
+
+    #[test]
+    fn blocks() {
+        assert_eq!(
+            statements("OPEN_CONTACT(%M0),BLOCK(%TM1),H_LINK(7),COIL(%M5);"),
+            ["start of %TM1 when %M0", "%M5 := %TM1.Q"]
+        );
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),BLOCK(%C8),H_LINK(6),COIL(%M5);\nEMPTY_CELL(4),H_LINK(6),COIL(%M6);\n\
+                 OPEN_CONTACT(%M1),EMPTY_CELL(10);\nOPEN_CONTACT(%M2),EMPTY_CELL(10);"
+            ),
+            [
+                "reset of %C8 when %M0",
+                "count-up of %C8 when %M1",
+                "count-down of %C8 when %M2",
+                "%M5 := %C8.E",
+                "%M6 := %C8.D"
+            ]
+        );
+        assert_eq!(statements("H_LINK,BLOCK(%MN2),EMPTY_CELL(7);"), ["start of %MN2 when true"]);
+        // An output wired to the input of the next.
+        assert_eq!(
+            statements("OPEN_CONTACT(%M0),BLOCK(%TM1),BLOCK(%TM2),H_LINK(5),COIL(%M5);"),
+            ["start of %TM1 when %M0", "start of %TM2 when %TM1.Q", "%M5 := %TM2.Q"]
+        );
+        assert_eq!(statements("H_LINK,BLOCK(Pump),EMPTY_CELL(7);"), ["call Pump when true"]);
+    }
+
+    #[test]
+    fn comparisons_and_operations() {
+        assert_eq!(
+            statements("COMPARE %MW0>5 AND %M1 END_BLOCK,H_LINK(5),OPERATE %MW1:=%MW2+1; INC %MW3 END_BLOCK;"),
+            ["((%MW0 > 5) & %M1): %MW1 := Add(%MW2, 1)", "((%MW0 > 5) & %M1): %MW3 := Add(%MW3, 1)"]
+        );
+    }
+
+    #[test]
+    fn contacts_are_read_before_coils_are_written() {
+        let versions = |rows: &str| -> Vec<bool> {
+            let it = model(rows);
+            let reads = it.accesses.iter().filter(|a| a.mode == Mode::Read && it.object(a.object).text == "%M5");
+            reads.map(|it| it.exposed).collect()
+        };
+        // One network: the contact does not see the coil. Two networks: it does.
+        let joined = "OPEN_CONTACT(%M0),SHORT_CIRCUIT,H_LINK(8),COIL(%M5);\nEMPTY_CELL(2),OPEN_CONTACT(%M5),H_LINK(7),COIL(%M6);";
+        assert_eq!(versions(joined), [true]);
+        let apart = "OPEN_CONTACT(%M0),H_LINK(9),COIL(%M5);\nOPEN_CONTACT(%M5),H_LINK(9),COIL(%M6);";
+        assert_eq!(versions(apart), [false]);
+    }
+
+    #[test]
+    fn order_of_networks() {
+        let late = "OPEN_CONTACT(%M5),H_LINK(9),COIL(%M6);\nOPEN_CONTACT(%M0),H_LINK(9),COIL(%M5);";
+        assert_eq!(flaws(&model(late)), [Flaw::ReadBeforeDriven]);
+        let interlock = "OPEN_CONTACT(%M0),CLOSED_CONTACT(%M6),H_LINK(8),COIL(%M5);\n\
+                         OPEN_CONTACT(%M1),CLOSED_CONTACT(%M5),H_LINK(8),COIL(%M6);";
+        assert_eq!(flaws(&model(interlock)), []);
+    }
+
+    #[test]
+    fn transitions() {
+        let transition = || Part::Chart("CHART - PAGE 0 %X(0) --> %X(1)".into());
+        let rung =
+            "RUNG\nOPEN_CONTACT(%M0),BLOCK(%TM0),SHORT_CIRCUIT(7),HASH_COIL;\nEMPTY_CELL(10),COIL(%M1);\nEND_RUNG";
+        assert_eq!(flaws(&part(rung, transition())), [Flaw::ElementInTransition, Flaw::CoilInTransition]);
+        let receptivity = "RUNG\nH_LINK(10),HASH_COIL;\nEND_RUNG";
+        assert_eq!(flaws(&part(receptivity, Part::Main)), []);
+        let section = format!("LD : MAST - MAIN\n{receptivity}");
+        assert_eq!(flaws(&part(&section, Part::Main)), [Flaw::HashOutsideTransition]);
+    }
+
+    #[test]
+    fn operands_that_do_not_fit() {
+        let kinds = |rows: &str| model(rows).oddities.into_iter().map(|it| it.kind).collect::<Vec<_>>();
+        for rows in [
+            "OPEN_CONTACT(%MW0),H_LINK(9),COIL(%M0);",
+            "OPEN_CONTACT(5),H_LINK(9),COIL(%M0);",
+            "OPEN_CONTACT(%M0),H_LINK(9),COIL(%TM0);",
+            "COMPARE %MW0+1 END_BLOCK,H_LINK(8),COIL(%M0);",
+            "H_LINK,BLOCK(%MW0),EMPTY_CELL(7);",
+        ] {
+            assert!(matches!(kinds(rows).as_slice(), [OddityKind::OperandType(_)]), "{rows}: {:?}", kinds(rows));
+        }
+        assert!(matches!(kinds("OPEN_CONTACT(%M),H_LINK(9),COIL(%M0);").as_slice(), [OddityKind::Address(_)]));
+    }
+}
