@@ -9,7 +9,8 @@ use crate::syntax::{Language, SyntaxKind};
 const MARK: usize = 2;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St) || !is_suspicious(cx.text) {
+    let is_pl7 = matches!(cx.model.language, Language::Pl7Il | Language::Pl7St | Language::Pl7Ld);
+    if !is_pl7 || !is_suspicious(cx.text) {
         return;
     }
     let mark = TextSize::of("(*");

@@ -8,11 +8,11 @@ use crate::model::unit::StatementKind;
 use crate::syntax::Language;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St) {
+    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St | Language::Pl7Ld) {
         return;
     }
     for statement in &cx.model.statements {
-        // In a list a bit takes a result that was computed before: other writes may lie between.
+        // In a list or a rung a bit takes a result that was computed before: other writes may lie between.
         let (access, value) = match statement.kind {
             StatementKind::Store { access, value } => (access, value),
             StatementKind::Assign { access, value } if cx.model.language == Language::Pl7St => (access, value),
