@@ -436,9 +436,20 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
     let mut code = Code::default();
     for &(unit, offset) in layout(db, file) {
         let place = |it: TextRange| it + TextSize::new(offset);
+        // The words around the rows of a rung are no code of their own, so that the rung's own comment covers all of it.
+        let mut is_frame = false;
         for event in tree(db, unit).syntax().walk() {
             let token = match event {
-                WalkEvent::Enter(it) if it.kind() == SyntaxKind::Sentence => {
+                WalkEvent::Enter(it) | WalkEvent::Leave(it) if it.kind() == SyntaxKind::RungRow => {
+                    is_frame = matches!(event, WalkEvent::Leave(_));
+                    continue;
+                }
+                WalkEvent::Leave(it) if it.kind() == SyntaxKind::Rung => {
+                    is_frame = false;
+                    continue;
+                }
+                WalkEvent::Enter(it) if matches!(it.kind(), SyntaxKind::Sentence | SyntaxKind::Rung) => {
+                    is_frame = it.kind() == SyntaxKind::Rung;
                     let range = place(it.text_range());
                     code.statements.push((line(range.start()), line(range.end())));
                     continue;
@@ -450,6 +461,7 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
             match token.kind() {
                 SyntaxKind::Whitespace | SyntaxKind::Newline => {}
                 SyntaxKind::Comment | SyntaxKind::UnclosedComment => comments.push(range),
+                _ if is_frame => {}
                 _ => {
                     let at = line(range.start());
                     if code.lines.last().is_none_or(|&it| it < at) {

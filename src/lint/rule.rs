@@ -82,6 +82,7 @@ impl Rule {
                 Language::Pl7Il | Language::Pl7St | Language::Pl7Ld | Language::Pl7Gr7 | Language::Sfc
             ),
             // The actions and receptivities of a chart are in any of the languages.
+            "ld" => language == Language::Pl7Ld || language.is_chart(),
             "il" => language == Language::Pl7Il || language.is_chart(),
             "st" => language == Language::Pl7St || language.is_chart(),
             "g7" => language.is_chart(),
@@ -93,7 +94,7 @@ impl Rule {
     /// Whether programs of a family are among what the rule looks at.
     pub fn is_for_family(&self, family: Family) -> bool {
         self.dialects.iter().any(|dialect| match family {
-            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "g7"),
+            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld" | "g7"),
             Family::Pl72 => matches!(*dialect, "all" | "pl72"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })

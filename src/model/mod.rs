@@ -5,6 +5,7 @@
 pub mod chart;
 pub mod entity;
 pub mod expr;
+pub mod ladder;
 pub mod literal;
 pub mod lower;
 pub mod object;

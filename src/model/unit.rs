@@ -12,6 +12,7 @@ use smol_str::SmolStr;
 use super::chart::{Chart, CodeLanguage};
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
+use super::ladder::Flaw;
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use crate::syntax::Language;
@@ -373,6 +374,9 @@ pub enum OddityKind {
     BlockStructure(String),
     /// Operand of a type that the instruction does not take: the sentence says which it takes.
     OperandType(String),
+
+    // PL7 ladder.
+    Ladder(Flaw),
 
     // STEP 7 and STEP 5.
     /// The RLO at block start, which is the caller's.

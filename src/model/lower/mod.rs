@@ -4,6 +4,7 @@ mod awl;
 mod builder;
 mod chart;
 mod il;
+mod ladder;
 mod pl7;
 mod st;
 
@@ -20,8 +21,9 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
+        Language::Pl7Ld => ladder::lower(root, text, entity),
         Language::Pl7Gr7 | Language::Sfc => chart::lower(root, text, entity, language),
-        Language::Pl7Ld | Language::Exchange => empty(entity, language),
+        Language::Exchange => empty(entity, language),
     }
 }
 

@@ -6,6 +6,8 @@ use super::functions::{self, Function};
 use super::instructions::IlOp;
 use super::ladder_words::{self, Element};
 use super::word::{self, Keyword};
+use rowan::TextRange;
+
 use crate::syntax::node::{choices, nodes};
 use crate::syntax::{AstChildren, AstNode as _, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
@@ -270,6 +272,13 @@ impl<'t> Cell<'t> {
     /// The condition of `COMPARE ... END_BLOCK`.
     pub fn comparison(self) -> Option<Expr<'t>> {
         self.child()
+    }
+
+    /// What stands between the word of a block and its `END_BLOCK`.
+    pub fn block_text(self) -> Option<TextRange> {
+        let end = self.0.tokens().filter(|it| Keyword::of(it.text()) == Some(Keyword::EndBlock)).last()?;
+        let word = self.word()?.text_range();
+        (word.end() <= end.text_range().start()).then(|| TextRange::new(word.end(), end.text_range().start()))
     }
 
     /// The statements of `OPERATE ... END_BLOCK`.
