@@ -29,7 +29,7 @@ use crate::source::decode::{Encoding, SourceText};
 use crate::source::detect::{self, Detected, Dialect, FileHint};
 use crate::source::entity_from_address;
 use crate::source::line_index::LineIndex;
-use crate::source::split::{self, SplitHint};
+use crate::source::split::{self, SplitHint, UnitSpan};
 use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
 
 /// A file as it was read.
@@ -42,6 +42,9 @@ pub struct SourceFile {
     pub text: Arc<str>,
     #[returns(copy)]
     pub detected: Detected,
+    /// The units of the text, where an edit tells them from those before it.
+    #[returns(ref)]
+    known_spans: Option<Arc<(SplitHint, Arc<[UnitSpan]>)>>,
 }
 
 /// The one project: all files of a run, and what they are checked against.
@@ -89,19 +92,27 @@ pub struct Unit<'db> {
 #[salsa::tracked(returns(deref), no_eq)]
 pub fn layout<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[(Unit<'db>, u32)]> {
     let text = file.text(db);
-    let project = db.project();
-    let settings = project.settings(db);
-    let entity = settings.entity_address(file.path(db)).and_then(entity_from_address);
-    let hint = SplitHint { entity, mnemonics: None };
-    let spans = split::split(text, file.detected(db), &hint);
-    spans
-        .into_iter()
-        .map(|span| {
-            let part: Arc<str> = text.get(std::ops::Range::<usize>::from(span.range)).unwrap_or_default().into();
-            let unit = Unit::new(db, file, span.key, part, span.language, span.entity, span.unsupported);
-            (unit, u32::from(span.range.start()))
-        })
-        .collect()
+    let units = spans(db, file).iter().map(|span| {
+        let part: Arc<str> = text.get(std::ops::Range::<usize>::from(span.range)).unwrap_or_default().into();
+        let unit = Unit::new(db, file, span.key.clone(), part, span.language, span.entity.clone(), span.unsupported);
+        (unit, u32::from(span.range.start()))
+    });
+    units.collect()
+}
+
+/// How the text of a file is cut into units.
+#[salsa::tracked(no_eq)]
+fn spans(db: &dyn Db, file: SourceFile) -> Arc<[UnitSpan]> {
+    let hint = split_hint(db, file);
+    match file.known_spans(db).as_deref() {
+        Some((of, known)) if *of == hint => known.clone(),
+        _ => split::split(file.text(db), file.detected(db), &hint).into(),
+    }
+}
+
+fn split_hint(db: &dyn Db, file: SourceFile) -> SplitHint {
+    let entity = db.project().settings(db).entity_address(file.path(db)).and_then(entity_from_address);
+    SplitHint { entity, mnemonics: None }
 }
 
 /// Units of a file, without their places.
@@ -495,7 +506,7 @@ impl RootDatabase {
     /// Adds files, in the order given.
     pub fn set_files(&mut self, inputs: impl IntoIterator<Item = Input>) -> Vec<SourceFile> {
         let files: Vec<SourceFile> =
-            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text, it.detected)).collect();
+            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text, it.detected, None)).collect();
         self.project().set_files(self).to(files.clone());
         files
     }
@@ -503,9 +514,14 @@ impl RootDatabase {
     /// Gives a file another text; nothing happens when it is the same.
     pub fn set_text(&mut self, file: SourceFile, text: impl Into<Arc<str>>) {
         let text = text.into();
-        if **file.text(self) != *text {
-            file.set_text(self).to(text);
+        if **file.text(self) == *text {
+            return;
         }
+        let (old, hint) = (file.text(self), split_hint(self, file));
+        let known = split::resplit(old, spans(self, file), &text, file.detected(self), &hint);
+        let known = known.map(|it| Arc::new((hint, it.into())));
+        file.set_known_spans(self).to(known);
+        file.set_text(self).to(text);
     }
 }
 

@@ -305,6 +305,8 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Il | Extension::St if tally.lines == 0 || weak && tally.il + tally.st > 0 => {
             Detected::Pasted(tally.pl7_text(extension))
         }
+        // A sentence or an expression alone: nothing but what has addresses or marks of PL7.
+        Extension::Il | Extension::St if tally.pl7 == tally.lines => Detected::Pasted(tally.pl7_text(extension)),
         Extension::Ld if tally.rung > 0 => Detected::Unsupported { what: unsupported::LADDER },
         Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Unsupported { what: unsupported::GRAFCET },
         Extension::Sfc if tally.chart > 0 => Detected::Unsupported { what: unsupported::SFC },
