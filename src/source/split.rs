@@ -81,7 +81,9 @@ pub fn resplit(
     let end = |it: &UnitSpan| usize::from(it.range.end());
     let at = spans.partition_point(|it| end(it) <= changed).min(spans.len().checked_sub(1)?);
     let (unit, next) = (&spans[at], spans.get(at + 1));
-    if changed_end > end(unit) || !is_own(unit) || next.is_some_and(|it| !is_own(it)) {
+    // Of a unit that starts within a line, the blanks before it are the one's before.
+    let starts_line = at == 0 || old[..start(unit)].ends_with(['\n', '\r']);
+    if changed_end > end(unit) || !starts_line || !is_own(unit) || next.is_some_and(|it| !is_own(it)) {
         return None;
     }
     let moved = |offset: usize| (offset + new.len()).checked_sub(old.len());
