@@ -12,6 +12,7 @@ use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
+use super::symbols::{Remark, Symbol};
 use crate::syntax::Language;
 
 /// An input or output of a timer, counter, monostable, register or drum.
@@ -69,6 +70,8 @@ pub enum Mode {
     Reset,
     /// A word, table or text takes a value.
     Store,
+    /// Written in a way that the source does not tell: by assignment, set, reset or store.
+    Write,
     /// The previous value that `FP`/`FN` keeps: read and written.
     EdgeMemory,
     /// A pin of a block takes a condition.
@@ -98,6 +101,7 @@ impl Mode {
                 | Self::Set
                 | Self::Reset
                 | Self::Store
+                | Self::Write
                 | Self::EdgeMemory
                 | Self::InOut
                 | Self::Output
@@ -119,7 +123,7 @@ impl Mode {
             Self::AssignNot => "assigned (negated)",
             Self::Set => "set",
             Self::Reset => "reset",
-            Self::Store => "written",
+            Self::Store | Self::Write => "written",
             Self::EdgeMemory => "used as edge memory",
             Self::Drive(_) => "driven",
             Self::InOut => "passed to a call",
@@ -436,6 +440,10 @@ pub struct UnitModel {
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
     pub declarations: Vec<Declaration>,
+    /// Symbols that the unit declares for the program.
+    pub symbols: Vec<Symbol>,
+    /// Comments whose length is limited.
+    pub remarks: Vec<Remark>,
     /// Durations, as written.
     pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,
