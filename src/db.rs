@@ -18,6 +18,7 @@ use smol_str::SmolStr;
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::ProgramIndex;
+use crate::analysis::symbols::{self, SymbolTable};
 use crate::lint::settings::{ProgramScope, Settings};
 use crate::lint::suppress::{Code, Comment, Suppressions};
 use crate::lint::{
@@ -179,6 +180,13 @@ fn named_entities(db: &dyn Db, file: SourceFile) -> Box<[Entity]> {
     entities.filter(|it| **it != Entity::Container).cloned().collect()
 }
 
+/// Whether a file declares variables beside or without code: it belongs to the code around it.
+#[salsa::tracked]
+fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
+    let mut declaring = units(db, file).iter().filter(|it| it.language(db) == Language::Exchange);
+    declaring.any(|&it| !facts(db, it).symbols.is_empty())
+}
+
 /// The programs of the project.
 ///
 /// Files of one folder and vendor are one program, unless two of them define the same entity (two variants of one
@@ -193,7 +201,8 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     for &file in project.files(db) {
         let Some(family) = family(file.detected(db)) else { continue };
         let entities = named_entities(db, file);
-        if scope == ProgramScope::File || entities.is_empty() || entities.contains(&Entity::Listing) {
+        let is_part = !entities.is_empty() || *declares_variables(db, file);
+        if scope == ProgramScope::File || !is_part || entities.contains(&Entity::Listing) {
             alone.push((family, file));
             continue;
         }
@@ -250,14 +259,22 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
     program.files(db).iter().flat_map(|&file| units(db, file).iter().copied()).collect()
 }
 
+/// What the symbols of a program name. It has no places.
+#[salsa::tracked]
+pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
+    let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
+    SymbolTable::new(declaring.map(|&unit| facts(db, unit)))
+}
+
 /// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].
 #[salsa::tracked]
 pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
     let project = db.project();
     let settings = project.settings(db);
     let target = target_of(settings, program.family(db));
-    let facts = program_units(db, program).iter().map(|&unit| facts(db, unit)).collect();
-    let mut index = ProgramIndex::new(program.family(db), facts);
+    let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| facts(db, unit)).collect();
+    let facts = symbols::resolve(symbol_table(db, program), &facts);
+    let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
     let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
     if program.files(db).iter().any(|it| project.partly_read(db).contains(&folder(it))) {
         index.leave_incomplete();
@@ -345,6 +362,10 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
             found.extend(finding.clone().map(|site| place(db, units, site)));
         }
+        let table = symbol_table(db, program);
+        if !table.is_empty() {
+            found.iter_mut().for_each(|it| it.message = table.annotate(&it.message));
+        }
     }
     found.retain_mut(|it| match selection.severity(it.rule, it.severity) {
         Some(severity) => {
@@ -365,7 +386,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         .collect();
     let leftovers =
         suppressions.leftovers(crate::lint::rules(), |rule| selection.severity(rule, rule.severity).is_some());
-    let cx = FileCx { leftovers: &leftovers };
+    let cx = FileCx { text: file.text(db), leftovers: &leftovers };
     let ran = run_rules(settings, |rule, findings| match rule.check {
         Check::File(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
         Check::Unit(_) | Check::Program(_) => {}
@@ -573,7 +594,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             if unit.unsupported(&db).is_some() {
                 view.not_understood += unit.text(&db).len();
             } else {
-                view.not_understood += not_understood(tree(&db, unit));
+                view.not_understood += not_understood(unit.language(&db), tree(&db, unit));
             }
             for code in &unit_findings(&db, unit).failed {
                 outcome.internal_errors.push(format!("{}: {}: rule {code} failed", view.path, unit.entity(&db)));
@@ -600,8 +621,9 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
 }
 
 /// Bytes of tokens that the syntax could not place.
-fn not_understood(parse: &Parse) -> usize {
-    if parse.errors().is_empty() {
+fn not_understood(language: Language, parse: &Parse) -> usize {
+    // Between the programs of an exchange file, what is unknown is no mistake.
+    if parse.errors().is_empty() && language != Language::Exchange {
         return 0;
     }
     let root = parse.syntax();

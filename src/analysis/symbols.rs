@@ -77,6 +77,32 @@ impl SymbolTable {
         Some(format_smolstr!("{name}{rest}"))
     }
 
+    /// A message with the symbol behind each address that it names, and the address behind each symbol: every object
+    /// once.
+    pub fn annotate(&self, message: &str) -> String {
+        let parts: Vec<&str> = message.split('`').collect();
+        let mut out = String::with_capacity(message.len() + 16);
+        let mut done: FxHashSet<&str> = FxHashSet::default();
+        for (at, part) in parts.iter().enumerate() {
+            if at > 0 {
+                out.push('`');
+            }
+            out.push_str(part);
+            // The odd parts stand between two of the quotes, but for one behind an unpaired quote.
+            let is_closed = at % 2 == 0 && at > 1;
+            let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
+            let other = if name.starts_with('%') { self.symbol(name) } else { self.address(name) };
+            if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
+                out.truncate(out.len() - part.len());
+                out.push_str(" (`");
+                out.push_str(&other);
+                out.push_str("`)");
+                out.push_str(part);
+            }
+        }
+        out
+    }
+
     /// What a symbol used in code names, under the text that the code gives it.
     fn resolve(&self, object: &Object) -> Option<Object> {
         if object.class != Class::Symbol {
@@ -198,6 +224,19 @@ mod tests {
     }
 
     #[test]
+    fn messages_name_both() {
+        let table = table(VARIABLES);
+        let annotate = |message| table.annotate(message);
+        assert_eq!(annotate("`%M0` is set, `%M0` is reset"), "`%M0` (`Pump`) is set, `%M0` is reset");
+        assert_eq!(annotate("`pump` is `read`"), "`pump` (`%M0`) is `read`");
+        assert_eq!(annotate("use `Four`"), "use `Four` (`%MW10`)");
+        assert_eq!(annotate("`Pump` at `%M0`"), "`Pump` at `%M0`");
+        for kept in ["", "`", "``", "`%M0", "no `%M7`", "`Vis` and `Twice`"] {
+            assert_eq!(annotate(kept), kept);
+        }
+    }
+
+    #[test]
     fn code_uses_the_objects() {
         let table = table(VARIABLES);
         let code = facts(
@@ -244,7 +283,8 @@ mod tests {
         let text = "! IF %M9 THEN Pump := TRUE; ELSE %M0 := FALSE; END_IF; Four := 1; %M8 := %MW10 > 3;";
         let code = facts(text, Language::Pl7St);
         let resolved = &resolve(&table, &[&code])[0];
-        let writes: Vec<u32> = resolved.uses.iter().filter(|it| it.conditional && it.mode.writes()).map(|it| it.group).collect();
+        let writes: Vec<u32> =
+            resolved.uses.iter().filter(|it| it.conditional && it.mode.writes()).map(|it| it.group).collect();
         assert!(writes.len() == 2 && writes[0] == writes[1], "only one of the two is reached");
         let read = resolved.uses.iter().rfind(|it| it.mode == Mode::Read).unwrap();
         assert!(!read.exposed, "the word was just written under its symbol");

@@ -271,12 +271,16 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
             | Extension::St
             | Extension::Ld
             | Extension::Gr7
-            | Extension::Form(
-                unsupported::DFB | unsupported::VARIABLES | unsupported::APPLICATION | unsupported::ENCRYPTED,
-                _
-            )
+            | Extension::Form(unsupported::DFB | unsupported::VARIABLES | unsupported::APPLICATION, _)
     );
+    // The header of an encrypted block may be legible; what matters is not.
+    if extension == Extension::Form(unsupported::ENCRYPTED, Storage::Either) {
+        return Detected::Unsupported { what: unsupported::ENCRYPTED };
+    }
     if tally.is_exchange() || of_pl7 && tally.blocks > 0 {
+        return Detected::Exchange;
+    }
+    if extension == Extension::Form(unsupported::VARIABLES, Storage::Text) && tally.variables > 0 {
         return Detected::Exchange;
     }
     if !matches!(extension, Extension::Form(..))
@@ -315,6 +319,13 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
     }
 }
 
+/// Whether a line declares a variable, with an address or a type.
+fn is_variable(line: &str) -> bool {
+    let (name, rest) = word(line);
+    let rest = rest.trim_start();
+    !name.is_empty() && (rest.starts_with("AT %") || rest.starts_with("at %") || rest.starts_with(':'))
+}
+
 /// How much of a text is looked at.
 const SAMPLE: usize = 128 * 1024;
 
@@ -349,6 +360,8 @@ struct Tally {
     in_code_block: bool,
     /// Declaration sections and program units of IEC 61131-3.
     iec: u32,
+    /// `Pump AT %M0 : EBOOL;`
+    variables: u32,
     rung: u32,
     chart: u32,
     /// Words of S7-GRAPH.
@@ -412,6 +425,7 @@ impl Tally {
         let first = word(code).0.to_ascii_uppercase();
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
+        self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
             Some(Pl7Text::Il) => self.il += 1,
             Some(Pl7Text::St) => {
@@ -877,7 +891,10 @@ mod tests {
         check("a.st", "Moteur := Depart AND NOT Arret;\n", ST);
         check("a.st", "VAR\n x : INT;\nEND_VAR\nx := x + 1;\n", unsupported(unsupported::IEC));
         check("a.dfb", "FUNCTION_BLOCK Cpt\nEND_FUNCTION_BLOCK", unsupported(unsupported::DFB));
-        check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", unsupported(unsupported::VARIABLES));
+        check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", Detected::Exchange);
+        check("a.scy", "Cpt_vis : Cpt_pieces;", Detected::Exchange);
+        check("a.scy", "Dear reader", unsupported(unsupported::VARIABLES));
+        check("a.ufb", "[HEADER]\n[SOURCE_UNIT]\nA8F0\n[EOF]", unsupported(unsupported::ENCRYPTED));
         check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
         check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", unsupported(unsupported::GRAFCET));
         check(

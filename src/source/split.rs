@@ -273,8 +273,7 @@ fn exchange(units: &mut Units<'_>) {
         }
         let mut code = line.code;
         if let Some((block, rest)) = exchange_block(code) {
-            let unsupported = (block == "[DATA_UNIT]").then_some(unsupported::VARIABLES);
-            units.push(units.code_end, Draft { label: Some(block.into()), unsupported, ..Draft::container() });
+            units.push(units.code_end, Draft { label: Some(block.into()), ..Draft::container() });
             keys = SourceUnit::default();
             state = if block == "[SOURCE_UNIT]" { State::Keys } else { State::Other };
             code = rest;
@@ -628,7 +627,7 @@ mod tests {
                 ("[EOF]", KEYS, "[EOF]\n"),
             ],
         );
-        assert_eq!(units[6].unsupported, Some(unsupported::VARIABLES));
+        assert_eq!(unsupported(&units), [None; 8]);
     }
 
     #[test]

@@ -33,6 +33,11 @@ pub const TRANSITIONS: Limit = Limit::new(1024, "PL7:4190");
 pub const AND_CONVERGENCES: Limit = Limit::new(64, "PL7:4286");
 /// Branches of one divergence or convergence.
 pub const BRANCHES: Limit = Limit::new(11, "PL7:4191-4196");
+/// Characters of a symbol.
+pub const SYMBOL_LENGTH: Limit = Limit::new(32, "PL7:1198");
+/// Characters of the comment of a symbol, and of a section (also PL7:2007: subroutine).
+pub const SYMBOL_COMMENT: Limit = Limit::new(508, "PL7:1222");
+pub const MODULE_COMMENT: Limit = Limit::new(250, "PL7:1985");
 /// Columns of a rung.
 pub const LADDER_COLUMNS: Limit = Limit::new(11, "PL7:2660");
 

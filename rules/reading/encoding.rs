@@ -1,0 +1,60 @@
+//! X002: text whose characters were lost or read in the wrong encoding.
+
+use rowan::{TextRange, TextSize};
+
+use crate::lint::{FileCx, Sink};
+
+pub(crate) fn check(cx: &FileCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    if cx.text.is_ascii() {
+        return;
+    }
+    let lost = Found::new(cx.text, |pair| is_lost(pair.0));
+    let mixed = Found::new(cx.text, |pair| is_doubled(pair.0, pair.1));
+    if let Some(range) = lost.first {
+        sink.report(range, format!("{} that mean nothing in the file's encoding", lost.count("character")));
+    }
+    if let Some(range) = mixed.first {
+        sink.report(range, format!("{} stored as UTF-8 and read in another encoding", mixed.count("character")))
+            .note("the file mixes encodings, or was converted twice");
+    }
+}
+
+struct Found {
+    first: Option<TextRange>,
+    number: usize,
+}
+
+impl Found {
+    fn new(text: &str, wanted: impl Fn((char, char)) -> bool) -> Self {
+        let mut found = Self { first: None, number: 0 };
+        let mut characters = text.char_indices().peekable();
+        while let Some((at, it)) = characters.next() {
+            let next = characters.peek().map_or('\0', |it| it.1);
+            if !it.is_ascii() && wanted((it, next)) {
+                found.number += 1;
+                let start = TextSize::new(u32::try_from(at).unwrap_or(u32::MAX));
+                found.first.get_or_insert_with(|| TextRange::at(start, TextSize::of(it)));
+            }
+        }
+        found
+    }
+
+    fn count(&self, what: &str) -> String {
+        format!("the text holds {} {what}{}", self.number, if self.number == 1 { "" } else { "s" })
+    }
+}
+
+/// The mark of a byte without meaning, and controls that no program holds. U+0085 ends a line in some encodings.
+fn is_lost(it: char) -> bool {
+    it == '\u{fffd}' || matches!(it, '\u{80}'..='\u{9f}') && it != '\u{85}'
+}
+
+/// What accented letters (`Ã©`), no-break spaces and guillemets (`Â«`) look like when their UTF-8 is read as
+/// Windows-1252, by their first two characters.
+fn is_doubled(first: char, second: char) -> bool {
+    match first {
+        'Â' => matches!(second, '\u{a0}'..='¿'),
+        'Ã' => matches!(second, '\u{a0}'..='¿') || "€‚ƒ„…†‡ˆ‰Š‹ŒŽ‘’“”•–—˜™š›œžŸ".contains(second),
+        _ => false,
+    }
+}
