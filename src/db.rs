@@ -1,8 +1,8 @@
 //! The database: salsa inputs and queries, the only place that ties the layers together.
 //!
-//! `file -> units -> tree -> model -> facts -> program -> findings`. A unit's tree, model and own findings hang on its
-//! text alone. What crosses units goes through [`facts`], which hold no position and are compared for equality, so that
-//! an edit which changes no fact stops there.
+//! `file -> units -> analysis -> facts -> program -> findings`. A unit's tree, model and own findings hang on its text
+//! alone and are made in one go. What crosses units goes through [`facts`], which hold no position and are compared for
+//! equality, so that an edit which changes no fact stops there.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -25,13 +25,13 @@ use crate::lint::{
     Check, Diagnostic, FileCx, Finding, Location, Outcome, ProgramCx, Rule, SourceView, UnitCx, Unread, UnreadReason,
 };
 use crate::model::entity::{Entity, Family};
-use crate::model::{UnitModel, lower};
+use crate::model::lower;
 use crate::source::decode::{Encoding, SourceText};
 use crate::source::detect::{self, Detected, Dialect, FileHint};
 use crate::source::entity_from_address;
 use crate::source::line_index::LineIndex;
 use crate::source::split::{self, SplitHint};
-use crate::syntax::{self, Language, Parse, SyntaxKind};
+use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
 use crate::target::Target;
 
 /// A file as it was read.
@@ -112,53 +112,66 @@ pub fn units<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Unit<'db>]> {
     layout(db, file).iter().map(|it| it.0).collect()
 }
 
-/// The lossless tree of a unit. `no_eq`: the text changed, so the tree did.
+/// The lossless tree of a unit, for those who look at one: [`analysis`] makes its own and drops it.
 #[salsa::tracked(no_eq, lru = 256)]
 pub fn tree<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Parse {
+    parse(db, unit)
+}
+
+fn parse(db: &dyn Db, unit: Unit<'_>) -> Parse {
     if unit.unsupported(db).is_some() {
         return syntax::opaque(unit.text(db));
     }
     syntax::parse(unit.language(db), unit.text(db))
 }
 
-/// What the unit's code does. `no_eq`: it holds ranges.
+/// What outlives the tree and the model of a unit.
+#[derive(Debug)]
+pub struct UnitAnalysis {
+    facts: Arc<UnitFacts>,
+    /// Of the rules that look at one unit, with ranges relative to it.
+    findings: Ran<TextRange>,
+    /// Places that the facts name.
+    anchors: Box<[TextRange]>,
+    /// Bytes of text that the syntax could not place.
+    not_understood: usize,
+}
+
+/// Parses and lowers a unit, runs the rules that look at it, and keeps what came of it. Tree and model are many times
+/// larger than that, so they go at once.
 #[salsa::tracked(no_eq)]
-pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitModel {
-    lower::lower(&tree(db, unit).syntax(), unit.text(db), unit.entity(db).clone(), unit.language(db))
+pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
+    let (text, language) = (unit.text(db), unit.language(db));
+    let tree = parse(db, unit);
+    let model = lower::lower(tree.syntax(), text, unit.entity(db).clone(), language);
+    let mut facts = UnitFacts::new(&model);
+    facts.has_gaps |=
+        unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
+    let settings = db.project().settings(db);
+    let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
+    let target = target_of(settings, family);
+    let cx = UnitCx::new(&model, &tree, text, settings, &target);
+    let findings = run_rules(settings, |rule, findings| match rule.check {
+        Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
+        Check::Unit(_) | Check::Program(_) | Check::File(_) => {}
+    });
+    let not_understood = if unit.unsupported(db).is_some() { text.len() } else { not_understood(language, &tree) };
+    UnitAnalysis { facts: Arc::new(facts), findings, anchors: model.anchors.into_boxed_slice(), not_understood }
 }
 
 /// Firewall: what the unit tells its program, without places.
 #[salsa::tracked]
-pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitFacts {
-    let mut facts = UnitFacts::new(model(db, unit));
-    let tree = tree(db, unit);
-    facts.has_gaps |=
-        unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, &tree.syntax());
-    facts
+pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitFacts> {
+    analysis(db, unit).facts.clone()
 }
 
 /// Whether the unit is PL7 text that does not say what it is: a listing shown in a document, part of something unread.
-fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: &syntax::SyntaxNode) -> bool {
+fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: syntax::SyntaxNode<'_>) -> bool {
     let file = unit.file(db);
     matches!(file.detected(db), Detected::Pasted(_))
         && *unit.entity(db) != Entity::Container
         && db.project().settings(db).entity_address(file.path(db)).is_none()
         && !root.children().any(|it| it.kind() == SyntaxKind::Heading)
-}
-
-/// Findings of the rules that look at one unit, with ranges relative to it.
-#[salsa::tracked]
-pub fn unit_findings<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Ran<TextRange> {
-    let project = db.project();
-    let settings = project.settings(db);
-    let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
-    let target = target_of(settings, family);
-    let language = unit.language(db);
-    let cx = UnitCx::new(model(db, unit), tree(db, unit), unit.text(db), settings, &target);
-    run_rules(settings, |rule, findings| match rule.check {
-        Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
-        Check::Unit(_) | Check::Program(_) | Check::File(_) => {}
-    })
 }
 
 /// Files that make up one program, in path order. The key is the folder, or the file when it stands alone.
@@ -263,7 +276,7 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
 #[salsa::tracked]
 pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
     let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
-    SymbolTable::new(declaring.map(|&unit| facts(db, unit)))
+    SymbolTable::new(declaring.map(|&unit| &**facts(db, unit)))
 }
 
 /// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].
@@ -272,7 +285,7 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let project = db.project();
     let settings = project.settings(db);
     let target = target_of(settings, program.family(db));
-    let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| facts(db, unit)).collect();
+    let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
     let facts = symbols::resolve(symbol_table(db, program), &facts);
     let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
     let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
@@ -351,16 +364,16 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     let layout = layout(db, file);
     let mut found = Vec::new();
     for &(unit, offset) in layout {
-        for finding in &unit_findings(db, unit).findings {
+        for finding in &analysis(db, unit).findings.findings {
             let shifted =
                 finding.clone().map(|it| Some(FilePlace { file, range: it.checked_add(TextSize::new(offset))? }));
             found.extend(shifted);
         }
     }
     if let Some(program) = *program_of(db, file) {
-        let units = program_units(db, program);
+        let mut places = Places::new(db, program);
         for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
-            found.extend(finding.clone().map(|site| place(db, units, site)));
+            found.extend(finding.clone().map(|site| places.of(site)));
         }
         let table = symbol_table(db, program);
         if !table.is_empty() {
@@ -406,13 +419,30 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     findings.into_boxed_slice()
 }
 
-/// Where a site lies.
-fn place(db: &dyn Db, units: &[Unit<'_>], site: Site) -> Option<FilePlace> {
-    let unit = *units.get(site.unit as usize)?;
-    let file = unit.file(db);
-    let offset = layout(db, file).iter().find(|it| it.0 == unit)?.1;
-    let range = model(db, unit).place(site.anchor).checked_add(TextSize::new(offset))?;
-    Some(FilePlace { file, range })
+/// Where the sites of a program lie.
+struct Places<'db> {
+    db: &'db dyn Db,
+    units: &'db [Unit<'db>],
+    /// Offsets of the units, as far as their files were asked for.
+    offsets: FxHashMap<Unit<'db>, u32>,
+}
+
+impl<'db> Places<'db> {
+    fn new(db: &'db dyn Db, program: Program<'db>) -> Self {
+        Self { db, units: program_units(db, program), offsets: FxHashMap::default() }
+    }
+
+    fn of(&mut self, site: Site) -> Option<FilePlace> {
+        let unit = *self.units.get(site.unit as usize)?;
+        let file = unit.file(self.db);
+        if !self.offsets.contains_key(&unit) {
+            self.offsets.extend(layout(self.db, file).iter().copied());
+        }
+        let offset = *self.offsets.get(&unit)?;
+        let anchors = &analysis(self.db, unit).anchors;
+        let range = anchors.get(site.anchor as usize).or(anchors.first()).copied().unwrap_or_default();
+        Some(FilePlace { file, range: range.checked_add(TextSize::new(offset))? })
+    }
 }
 
 fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
@@ -432,19 +462,27 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
     let mut comments = Vec::new();
     let mut code = Code::default();
     for &(unit, offset) in layout(db, file) {
-        for element in tree(db, unit).syntax().descendants_with_tokens() {
-            let range = element.text_range() + TextSize::new(offset);
-            match element.kind() {
+        let place = |it: TextRange| it + TextSize::new(offset);
+        for event in tree(db, unit).syntax().walk() {
+            let token = match event {
+                WalkEvent::Enter(it) if it.kind() == SyntaxKind::Sentence => {
+                    let range = place(it.text_range());
+                    code.statements.push((line(range.start()), line(range.end())));
+                    continue;
+                }
+                WalkEvent::Enter(_) | WalkEvent::Leave(_) => continue,
+                WalkEvent::Token(it) => it,
+            };
+            let range = place(token.text_range());
+            match token.kind() {
                 SyntaxKind::Whitespace | SyntaxKind::Newline => {}
                 SyntaxKind::Comment | SyntaxKind::UnclosedComment => comments.push(range),
-                SyntaxKind::Sentence => code.statements.push((line(range.start()), line(range.end()))),
-                _ if element.as_token().is_some() => {
+                _ => {
                     let at = line(range.start());
                     if code.lines.last().is_none_or(|&it| it < at) {
                         code.lines.push(at);
                     }
                 }
-                _ => {}
             }
         }
     }
@@ -564,15 +602,12 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     }
     let encodings: Vec<&'static str> = linted.iter().map(|it| it.source.encoding.as_str()).collect();
     let mut db = RootDatabase::new(settings, None);
-    // One run, one revision: nothing is ever evicted, and the lock of the least-recently-used list is not taken.
-    tree::set_lru_capacity(&mut db, 0);
     partly_read.dedup();
     db.project().set_partly_read(&mut db).to(partly_read);
     let files = db.set_files(linted);
     files.par_iter().for_each_with(db.clone(), |db, &file| {
         for &unit in units(db, file) {
             facts(db, unit);
-            unit_findings(db, unit);
         }
     });
     let found: Vec<Vec<FileFinding>> =
@@ -591,12 +626,9 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             if *unit.entity(&db) != Entity::Container {
                 view.entities += 1;
             }
-            if unit.unsupported(&db).is_some() {
-                view.not_understood += unit.text(&db).len();
-            } else {
-                view.not_understood += not_understood(unit.language(&db), tree(&db, unit));
-            }
-            for code in &unit_findings(&db, unit).failed {
+            let analysis = analysis(&db, unit);
+            view.not_understood += analysis.not_understood;
+            for code in &analysis.findings.failed {
                 outcome.internal_errors.push(format!("{}: {}: rule {code} failed", view.path, unit.entity(&db)));
             }
         }
@@ -615,7 +647,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
         }
     }
     outcome.elapsed = start.elapsed();
-    // Dropping the trees takes as long as building them, and the process is about to end.
+    // Dropping all facts takes time, and the process is about to end.
     std::mem::forget(db);
     outcome
 }

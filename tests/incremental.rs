@@ -98,7 +98,7 @@ fn an_edit_in_one_network_runs_that_unit_alone() {
     setup.edit(0, "U     E 0.2", "U     E 0.7");
     setup.check();
     let executed = setup.executed();
-    for query in ["tree", "model", "facts", "unit_findings"] {
+    for query in ["analysis", "facts"] {
         assert_eq!(Setup::count(&executed, query), 1, "{query}: {executed:?}");
     }
     // The block reads another input: the program is looked at again, and nothing else.
@@ -111,7 +111,7 @@ fn an_edit_that_changes_no_access_stops_before_other_units() {
     setup.edit(0, "TITLE = first\n", "TITLE = first network\n// moved\n\n");
     setup.check();
     let executed = setup.executed();
-    for query in ["tree", "model", "facts", "unit_findings"] {
+    for query in ["analysis", "facts"] {
         assert_eq!(Setup::count(&executed, query), 1, "{query}: {executed:?}");
     }
     assert_eq!(Setup::count(&executed, "program_findings"), 0, "{executed:?}");
@@ -124,13 +124,13 @@ fn an_edit_in_one_sentence_runs_that_entity_alone() {
     setup.edit(0, "INC %MW4", "INC %MW4; INC %MW4");
     setup.check();
     let executed = setup.executed();
-    for query in ["tree", "model", "facts", "unit_findings"] {
+    for query in ["analysis", "facts"] {
         assert_eq!(Setup::count(&executed, query), 1, "{query}: {executed:?}");
     }
     setup.edit(0, "(* counting *)", "(* counting up *)");
     setup.check();
     let executed = setup.executed();
-    assert_eq!(Setup::count(&executed, "unit_findings"), 1, "{executed:?}");
+    assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
     assert_eq!(Setup::count(&executed, "program_findings"), 0, "{executed:?}");
 }
 
@@ -146,7 +146,7 @@ fn another_file_of_the_program_is_not_read_again() {
     setup.edit(1, "= A 9.1", "= A 9.0");
     let messages = setup.check();
     let executed = setup.executed();
-    for query in ["tree", "model", "facts", "unit_findings"] {
+    for query in ["analysis", "facts"] {
         assert_eq!(Setup::count(&executed, query), 1, "{query}: {executed:?}");
     }
     // A new fact does reach the other file.

@@ -1,7 +1,7 @@
 //! I012: more than one instruction on a line.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 
 use crate::lint::{Applicability, Edit, Sink, UnitCx};
 use crate::syntax::SyntaxKind;
@@ -9,7 +9,7 @@ use crate::syntax::pl7::ast::Sentence;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for sentence in cx.nodes(SyntaxKind::Sentence) {
-        let Some(sentence) = Sentence::cast(sentence.clone()) else { continue };
+        let Some(sentence) = Sentence::cast(sentence) else { continue };
         if sentence.marker().is_some_and(|it| it.kind() == SyntaxKind::SentenceStart) {
             continue;
         }

@@ -1,7 +1,7 @@
 //! T009: operators whose order is easily misread.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 
 use crate::lint::{Applicability, Edit, Reported, Sink, UnitCx};
 use crate::syntax::SyntaxKind;
@@ -11,31 +11,31 @@ use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, UnaryOp};
 const LONGEST_SHOWN: usize = 200;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
-        let Some(op) = expr.op() else { continue };
+    for &(parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
+        let Some((expr, op)) = BinExpr::cast(expr).and_then(|it| Some((it, it.op()?))) else { continue };
         if !op.is_logical() {
-            negated_operand(cx, sink, &expr, op);
+            negated_operand(cx, sink, expr, op);
             continue;
         }
-        let parent = expr.syntax().parent().and_then(BinExpr::cast).and_then(|it| it.op());
+        let parent = BinExpr::cast(parent).and_then(|it| it.op());
         if parent.is_none_or(|it| !it.is_logical()) {
-            logical_chain(cx, sink, &expr);
+            logical_chain(cx, sink, expr);
         }
     }
 }
 
 /// One finding for all that should stand in parentheses under one outermost logical operator.
-fn logical_chain(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, whole: &BinExpr) {
+fn logical_chain<'a>(cx: &UnitCx<'a>, sink: &mut Sink<'_, TextRange>, whole: BinExpr<'a>) {
     let mut places: Vec<TextRange> = Vec::new();
     let mut words: Vec<String> = Vec::new();
-    let mut stack = vec![whole.clone()];
+    let mut stack = vec![whole];
     while let Some(expr) = stack.pop() {
         let (Some(op), Some(operator)) = (expr.op(), expr.operator()) else { continue };
         if !op.is_logical() {
             continue;
         }
-        for inner in operands(&expr) {
-            if is_doubtful(cx, &expr, op, &inner) {
+        for inner in operands(expr) {
+            if is_doubtful(cx, expr, op, inner) {
                 places.push(inner.syntax().text_range());
                 for word in inner.operator().iter().chain([&operator]).map(|it| it.text().to_ascii_uppercase()) {
                     if !words.contains(&word) {
@@ -61,7 +61,7 @@ fn logical_chain(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, whole: &BinExp
 }
 
 /// `NOT a = b`, `NOT a + b`: the `NOT` belongs to `a` alone.
-fn negated_operand(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, expr: &BinExpr, op: BinOp) {
+fn negated_operand(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, expr: BinExpr<'_>, op: BinOp) {
     let Some(Expr::Unary(negation)) = expr.lhs() else { return };
     if negation.op() != Some(UnaryOp::Not) || op == BinOp::Assign {
         return;
@@ -75,7 +75,7 @@ fn negated_operand(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, expr: &BinEx
     grouping(cx, whole, &edits, found).fix("Write the parentheses that apply", Applicability::Safe, edits);
 }
 
-fn operands(expr: &BinExpr) -> Vec<BinExpr> {
+fn operands(expr: BinExpr<'_>) -> Vec<BinExpr<'_>> {
     [expr.lhs(), expr.rhs()]
         .into_iter()
         .filter_map(|it| if let Some(Expr::Bin(it)) = it { Some(it) } else { None })
@@ -84,13 +84,13 @@ fn operands(expr: &BinExpr) -> Vec<BinExpr> {
 
 /// Whether an operand of a logical operator should stand in parentheses: it has another logical operator, or is a
 /// comparison while the other operand is a number.
-fn is_doubtful(cx: &UnitCx<'_>, whole: &BinExpr, op: BinOp, operand: &BinExpr) -> bool {
+fn is_doubtful<'a>(cx: &UnitCx<'a>, whole: BinExpr<'a>, op: BinOp, operand: BinExpr<'_>) -> bool {
     let Some(inner) = operand.op() else { return false };
     if inner.is_logical() {
         return inner != op;
     }
     let others = [whole.lhs(), whole.rhs()];
-    inner.is_comparison() && others.into_iter().flatten().any(|it| cx.kinds().of(&it).is_integer())
+    inner.is_comparison() && others.into_iter().flatten().any(|it| cx.kinds().of(it).is_integer())
 }
 
 fn parentheses(place: TextRange) -> [Edit<TextRange>; 2] {

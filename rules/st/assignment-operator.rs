@@ -1,36 +1,36 @@
 //! T018: `=` where `:=` is meant, and the reverse.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 
 use crate::lint::{Applicability, Sink, UnitCx};
 use crate::syntax::pl7::ast::{AssignStmt, BinExpr, BinOp, ForStmt};
 use crate::syntax::{SyntaxKind, SyntaxToken};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let assignments = cx.nodes(SyntaxKind::AssignStmt).iter().cloned().filter_map(AssignStmt::cast);
-    let loops = cx.nodes(SyntaxKind::ForStmt).iter().cloned().filter_map(ForStmt::cast);
+    let assignments = cx.nodes(SyntaxKind::AssignStmt).filter_map(AssignStmt::cast);
+    let loops = cx.nodes(SyntaxKind::ForStmt).filter_map(ForStmt::cast);
     let operators =
         assignments.map(|it| (it.target(), it.operator())).chain(loops.map(|it| (it.index(), it.operator())));
     for (target, operator) in operators {
         let Some(operator) = operator.filter(|it| it.kind() == SyntaxKind::Eq) else { continue };
         let target = target.map_or("", |it| cx.text_of(it.syntax().text_range()));
-        exchange(sink, &operator, ":=", format!("`=` compares, and `{target}` is to be assigned"));
+        exchange(sink, operator, ":=", format!("`=` compares, and `{target}` is to be assigned"));
     }
-    for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
+    for &(parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
+        let Some(expr) = BinExpr::cast(expr) else { continue };
         // `Motor(START := %M0)` names a parameter: no condition, whatever else is wrong with it.
-        let parent = expr.syntax().parent().map(|it| it.kind());
         if expr.op() == Some(BinOp::Assign)
-            && !matches!(parent, Some(SyntaxKind::CallStmt | SyntaxKind::CallExpr))
+            && !matches!(parent.kind(), SyntaxKind::CallStmt | SyntaxKind::CallExpr)
             && let Some(operator) = expr.operator()
         {
             let target = expr.lhs().map_or("", |it| cx.text_of(it.syntax().text_range()));
-            exchange(sink, &operator, "=", format!("`:=` assigns, and `{target}` is to be compared"));
+            exchange(sink, operator, "=", format!("`:=` assigns, and `{target}` is to be compared"));
         }
     }
 }
 
-fn exchange(sink: &mut Sink<'_, TextRange>, operator: &SyntaxToken, by: &str, message: String) {
+fn exchange(sink: &mut Sink<'_, TextRange>, operator: SyntaxToken<'_>, by: &str, message: String) {
     let place = operator.text_range();
     sink.report(place, message).replace(format!("Write `{by}`"), Applicability::Safe, place, by);
 }

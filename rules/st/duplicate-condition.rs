@@ -1,7 +1,7 @@
 //! T017: a condition that stands twice in one `IF`, or makes no difference.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 use rustc_hash::FxHashMap;
 
 use crate::lint::{Sink, UnitCx};
@@ -9,15 +9,15 @@ use crate::syntax::pl7::ast::{Expr, IfStmt, Stmt};
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for statement in cx.nodes(SyntaxKind::IfStmt).iter().cloned().filter_map(IfStmt::cast) {
-        if !repeats(cx, sink, &statement) {
-            makes_no_difference(cx, sink, &statement);
+    for statement in cx.nodes(SyntaxKind::IfStmt).filter_map(IfStmt::cast) {
+        if !repeats(cx, sink, statement) {
+            makes_no_difference(cx, sink, statement);
         }
     }
 }
 
 /// Reports conditions that an earlier arm has; whether the last arm's is one.
-fn repeats(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: &IfStmt) -> bool {
+fn repeats(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: IfStmt<'_>) -> bool {
     let mut seen: FxHashMap<Vec<String>, TextRange> = FxHashMap::default();
     let mut is_repeated = false;
     for condition in statement.arms().filter_map(|it| it.condition()).filter_map(bare) {
@@ -33,7 +33,7 @@ fn repeats(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: &IfStmt) 
     is_repeated
 }
 
-fn makes_no_difference(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: &IfStmt) {
+fn makes_no_difference(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: IfStmt<'_>) {
     let Some(last) = statement.arms().last() else { return };
     let Some((body, other)) = last.body().zip(statement.else_arm().and_then(|it| it.body())) else { return };
     let Some(place) = last.condition().map(|it| it.syntax().text_range()) else { return };
@@ -46,16 +46,16 @@ fn makes_no_difference(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statemen
 }
 
 /// The expression without the parentheses around the whole.
-fn bare(mut expr: Expr) -> Option<Expr> {
-    while let Expr::Paren(it) = &expr {
+fn bare(mut expr: Expr<'_>) -> Option<Expr<'_>> {
+    while let Expr::Paren(it) = expr {
         expr = it.expr()?;
     }
     Some(expr)
 }
 
 /// The tokens of a piece of program as PL7 reads them: no blanks, no comments, names in one case.
-fn tokens(node: &SyntaxNode) -> impl Iterator<Item = String> {
-    let tokens = node.descendants_with_tokens().filter_map(rowan::NodeOrToken::into_token);
+fn tokens(node: SyntaxNode<'_>) -> impl Iterator<Item = String> {
+    let tokens = node.descendant_tokens();
     tokens.filter(|it| !it.kind().is_trivia()).map(|it| match it.kind() {
         SyntaxKind::CharString => it.text().to_owned(),
         _ => it.text().to_uppercase(),

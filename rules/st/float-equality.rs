@@ -1,7 +1,7 @@
 //! T012: floating-point numbers compared for equality.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::pl7_kinds::Kind;
@@ -9,10 +9,13 @@ use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, LiteralValue};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
+    if !cx.model.has_floats {
+        return;
+    }
+    for expr in cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast) {
         let (Some(BinOp::Eq | BinOp::Ne), Some(operator)) = (expr.op(), expr.operator()) else { continue };
         let (Some(a), Some(b)) = (expr.lhs(), expr.rhs()) else { continue };
-        let kinds = [&a, &b].map(|it| cx.kinds().of(it));
+        let kinds = [a, b].map(|it| cx.kinds().of(it));
         // A whole number beside a floating-point number is T011's affair.
         if !kinds.contains(&Kind::Float) || kinds.iter().any(|it| it.is_integer()) || is_zero(&a) || is_zero(&b) {
             continue;

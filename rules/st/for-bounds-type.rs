@@ -1,7 +1,7 @@
 //! T003: a bound of a `FOR` that is no number of the type word.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::pl7_kinds::Kind;
@@ -9,10 +9,10 @@ use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::ForStmt;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for statement in cx.nodes(SyntaxKind::ForStmt).iter().cloned().filter_map(ForStmt::cast) {
+    for statement in cx.nodes(SyntaxKind::ForStmt).filter_map(ForStmt::cast) {
         for (name, bound) in [("start", statement.start()), ("end", statement.end())] {
             let Some(bound) = bound else { continue };
-            let kind = cx.kinds().of(&bound);
+            let kind = cx.kinds().of(bound);
             if matches!(kind, Kind::Word | Kind::Double | Kind::Integer | Kind::Unknown) {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! T002: the index of a `FOR` is no word, or no word that may be written.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 use rustc_hash::FxHashMap;
 
 use crate::lint::{Sink, UnitCx};
@@ -14,11 +14,11 @@ use crate::syntax::pl7::ast::{Expr, ForStmt};
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let indices = cx.model.loops.iter().filter_map(|it| it.index_range.zip(it.index));
     let indices: FxHashMap<TextRange, ObjectId> = indices.collect();
-    for statement in cx.nodes(SyntaxKind::ForStmt).iter().cloned().filter_map(ForStmt::cast) {
+    for statement in cx.nodes(SyntaxKind::ForStmt).filter_map(ForStmt::cast) {
         let Some(index) = statement.index() else { continue };
         let place = index.syntax().text_range();
         let text = cx.text_of(place);
-        let what = match (&index, cx.kinds().of(&index)) {
+        let what = match (&index, cx.kinds().of(index)) {
             (Expr::Name(_), _) => continue,
             (Expr::Object(_), Kind::Word | Kind::Double | Kind::Unknown) => {
                 // The model has resolved the object.

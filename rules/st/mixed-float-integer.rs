@@ -1,7 +1,7 @@
 //! T011: floating-point numbers and whole numbers meet without a conversion.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 
 use crate::lint::{Applicability, Severity, Sink, UnitCx};
 use crate::model::pl7_kinds::{Kind, Kinds};
@@ -10,17 +10,20 @@ use crate::syntax::pl7::ast::{AssignStmt, BinExpr, CallExpr, CallStmt, Expr};
 use crate::syntax::pl7::functions::Function;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for expr in cx.nodes(SyntaxKind::BinExpr).iter().cloned().filter_map(BinExpr::cast) {
+    if !cx.model.has_floats {
+        return;
+    }
+    for expr in cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast) {
         pair(cx, sink, expr.lhs(), expr.rhs(), expr.syntax().text_range());
     }
-    for statement in cx.nodes(SyntaxKind::AssignStmt).iter().cloned().filter_map(AssignStmt::cast) {
+    for statement in cx.nodes(SyntaxKind::AssignStmt).filter_map(AssignStmt::cast) {
         let place = statement.value().map_or(statement.syntax().text_range(), |it| it.syntax().text_range());
         pair(cx, sink, statement.target(), statement.value(), place);
     }
-    for call in cx.nodes(SyntaxKind::CallExpr).iter().cloned().filter_map(CallExpr::cast) {
+    for call in cx.nodes(SyntaxKind::CallExpr).filter_map(CallExpr::cast) {
         arguments(cx, sink, call.function(), call.arguments());
     }
-    for call in cx.nodes(SyntaxKind::CallStmt).iter().cloned().filter_map(CallStmt::cast) {
+    for call in cx.nodes(SyntaxKind::CallStmt).filter_map(CallStmt::cast) {
         if call.has_parentheses() {
             arguments(cx, sink, call.function(), call.arguments());
         }
@@ -28,9 +31,15 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 }
 
 /// Two operands that meet.
-fn pair(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, a: Option<Expr>, b: Option<Expr>, place: TextRange) {
+fn pair<'a>(
+    cx: &UnitCx<'a>,
+    sink: &mut Sink<'_, TextRange>,
+    a: Option<Expr<'a>>,
+    b: Option<Expr<'a>>,
+    place: TextRange,
+) {
     let (Some(a), Some(b)) = (a, b) else { return };
-    let kinds = [&a, &b].map(|it| cx.kinds().of(it));
+    let kinds = [a, b].map(|it| cx.kinds().of(it));
     if !kinds[0].mixes_with(kinds[1]) {
         return;
     }
@@ -48,16 +57,16 @@ fn pair(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, a: Option<Expr>, b: Opt
         .related_all([part(&a, kinds[0]), part(&b, kinds[1])]);
 }
 
-fn arguments(
-    cx: &UnitCx<'_>,
+fn arguments<'a>(
+    cx: &UnitCx<'a>,
     sink: &mut Sink<'_, TextRange>,
     function: Option<&'static Function>,
-    given: Vec<Option<Expr>>,
+    given: Vec<Option<Expr<'a>>>,
 ) {
     let Some(function) = function else { return };
     for (position, argument) in given.into_iter().enumerate() {
         let Some(argument) = argument else { continue };
-        let (wanted, kind) = (Kinds::wanted(function, position), cx.kinds().of(&argument));
+        let (wanted, kind) = (Kinds::wanted(function, position), cx.kinds().of(argument));
         if !wanted.mixes_with(kind) {
             continue;
         }

@@ -1,6 +1,6 @@
 //! T005: a comment inside a comment, or a comment that is not closed.
 
-use rowan::{NodeOrToken, TextRange, TextSize};
+use rowan::{TextRange, TextSize};
 
 use crate::lint::{Sink, UnitCx};
 use crate::syntax::{Language, SyntaxKind};
@@ -13,7 +13,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         return;
     }
     let mark = TextSize::of("(*");
-    for token in cx.parse.syntax().descendants_with_tokens().filter_map(NodeOrToken::into_token) {
+    for token in cx.parse.syntax().descendant_tokens() {
         let is_closed = token.kind() == SyntaxKind::Comment;
         if !is_closed && token.kind() != SyntaxKind::UnclosedComment {
             continue;

@@ -119,19 +119,18 @@ const MAX_COMPARISONS: u32 = 1000;
 impl UnitFacts {
     pub fn new(model: &UnitModel) -> Self {
         let numbers = numbers(model);
-        let mut values: FxHashMap<u32, ExprId> = FxHashMap::default();
-        let mut whens: FxHashMap<u32, ExprId> = FxHashMap::default();
+        let mut given = Given { values: vec![None; model.accesses.len()], whens: vec![None; model.accesses.len()] };
         let mut conditional_calls: FxHashSet<u32> = FxHashSet::default();
         for (at, statement) in model.statements.iter().enumerate() {
             let at = u32::try_from(at).unwrap_or(u32::MAX);
             match statement.kind {
                 StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
-                    values.insert(access, value);
+                    set(&mut given.values, access, value);
                 }
                 StatementKind::Set { access, when }
                 | StatementKind::Reset { access, when }
                 | StatementKind::Drive { access, when, .. } => {
-                    whens.insert(access, when);
+                    set(&mut given.whens, access, when);
                 }
                 StatementKind::Call(call)
                     if model.calls.get(call as usize).is_some_and(|it| it.when != Exprs::TRUE) =>
@@ -141,38 +140,38 @@ impl UnitFacts {
                 _ => {}
             }
         }
-        let groups = groups(model, &values);
+        let groups = groups(model, &given);
         let uses = model
             .accesses
             .iter()
             .enumerate()
             .map(|(at, access)| {
-                let at = u32::try_from(at).unwrap_or(u32::MAX);
+                let (value, when) = (given.values[at], given.whens[at]);
                 let statement = model.statement(access);
                 let by_call = conditional_calls.contains(&access.statement);
                 let called = match statement.map(|it| &it.kind) {
                     Some(StatementKind::Call(call)) => Some(*call),
                     _ => None,
                 };
-                let constant = values.get(&at).and_then(|&it| match *model.exprs.get(it) {
+                let constant = value.and_then(|it| match *model.exprs.get(it) {
                     Expr::Int(value) => Some(value),
                     Expr::Bool(value) => Some(i64::from(value)),
                     _ => None,
                 });
-                let own = whens.get(&at).is_some_and(|&it| is_own_absence(model, it, access.object))
-                    || values.get(&at).is_some_and(|&it| is_own_value(model, it, access.object));
+                let own = when.is_some_and(|it| is_own_absence(model, it, access.object))
+                    || value.is_some_and(|it| is_own_value(model, it, access.object));
                 Use {
                     object: access.object.0,
                     mode: access.mode,
                     anchor: access.anchor,
                     exposed: access.exposed,
-                    group: groups.get(&at).copied().unwrap_or(at),
+                    group: groups[at],
                     conditional: statement.is_some_and(|it| it.path != Exprs::TRUE)
                         || by_call
-                        || whens.get(&at).is_some_and(|&it| it != Exprs::TRUE),
+                        || when.is_some_and(|it| it != Exprs::TRUE),
                     constant,
                     own,
-                    holds: values.get(&at).is_some_and(|&it| depends_on(&model.exprs, it, access.object)),
+                    holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
                     network: statement.map_or(0, |it| it.network),
                     parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
                 }
@@ -186,7 +185,7 @@ impl UnitFacts {
             uses,
             calls: calls(model),
             exclusive_calls: exclusive_calls(model),
-            exclusive_uses: exclusive_uses(model, &values),
+            exclusive_uses: exclusive_uses(model, &given),
             instance_of: model.instance_of.clone(),
             declared: model
                 .declarations
@@ -266,24 +265,48 @@ fn numbers(model: &UnitModel) -> Vec<bool> {
     numbers
 }
 
-/// Groups of writes of one object, by access: equal numbers for writes of which at most one takes effect in a scan.
-fn groups(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> FxHashMap<u32, u32> {
-    let mut writes: FxHashMap<ObjectId, Vec<(u32, &Access)>> = FxHashMap::default();
-    for (at, access) in model.accesses.iter().enumerate() {
-        if access.mode.assigns() || access.mode == Mode::Store || matches!(access.mode, Mode::Drive(_)) {
-            writes.entry(access.object).or_default().push((u32::try_from(at).unwrap_or(u32::MAX), access));
-        }
+/// What the statements give to each access: the value of an assignment, the condition of a set, reset or drive.
+struct Given {
+    values: Vec<Option<ExprId>>,
+    whens: Vec<Option<ExprId>>,
+}
+
+fn set(list: &mut [Option<ExprId>], access: u32, it: ExprId) {
+    if let Some(slot) = list.get_mut(access as usize) {
+        *slot = Some(it);
     }
-    let mut groups = FxHashMap::default();
-    for list in writes.into_values().filter(|it| it.len() > 1) {
+}
+
+/// Accesses of some modes, those of one object together and in order; objects with one alone are left out.
+fn by_object(model: &UnitModel, wanted: impl Fn(Mode) -> bool) -> Vec<(u32, &Access)> {
+    let mut list: Vec<(u32, &Access)> = (0..).zip(&model.accesses).filter(|it| wanted(it.1.mode)).collect();
+    list.sort_by_key(|it| it.1.object);
+    let is_alone: Vec<bool> = (0..list.len())
+        .map(|at| {
+            let object = |at: Option<usize>| at.and_then(|it| list.get(it)).map(|it| it.1.object);
+            let own = object(Some(at));
+            object(at.checked_sub(1)) != own && object(Some(at + 1)) != own
+        })
+        .collect();
+    let mut is_alone = is_alone.into_iter();
+    list.retain(|_| is_alone.next() == Some(false));
+    list
+}
+
+/// Group of each access: equal for writes of one object of which at most one takes effect in a scan.
+fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
+    let drives = |it: Mode| it.assigns() || it == Mode::Store || matches!(it, Mode::Drive(_));
+    let writes = by_object(model, drives);
+    let mut groups: Vec<u32> = (0..u32::try_from(model.accesses.len()).unwrap_or(u32::MAX)).collect();
+    for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
         let mut open: Vec<Vec<(u32, &Access)>> = Vec::new();
         let mut budget = MAX_COMPARISONS;
-        for (at, access) in list {
+        for &(at, access) in list {
             let mut fits = |group: &Vec<(u32, &Access)>| {
                 group.len() < MAX_COMPARED
                     && group.iter().all(|&(other, before)| {
                         budget = budget.saturating_sub(1);
-                        budget > 0 && same_drive(model, values, (other, before), (at, access))
+                        budget > 0 && same_drive(model, given, (other, before), (at, access))
                     })
             };
             match open.iter_mut().take(MAX_COMPARED).find(|it| fits(it)) {
@@ -292,27 +315,23 @@ fn groups(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> FxHashMap<u32, 
             }
         }
         for group in open {
-            let first = group[0].0;
-            groups.extend(group.into_iter().map(|(at, _)| (at, first)));
+            for (at, _) in &group[1..] {
+                groups[*at as usize] = group[0].0;
+            }
         }
     }
     groups
 }
 
-fn exclusive_uses(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> Vec<(u32, u32)> {
+fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
     let stores = |it: Mode| matches!(it, Mode::Set | Mode::Reset | Mode::EdgeMemory);
-    let mut writes: FxHashMap<ObjectId, Vec<(u32, &Access)>> = FxHashMap::default();
-    for (at, access) in (0..).zip(&model.accesses) {
-        if stores(access.mode) || access.mode.assigns() {
-            writes.entry(access.object).or_default().push((at, access));
-        }
-    }
+    let writes = by_object(model, |it| stores(it) || it.assigns());
     let mut pairs = Vec::new();
-    for list in writes.into_values().filter(|it| it.len() > 1) {
+    for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
         for (at, second) in list.iter().take(MAX_COMPARED).enumerate() {
             for first in &list[..at] {
                 let either = stores(first.1.mode) || stores(second.1.mode);
-                if either && same_drive(model, values, *first, *second) {
+                if either && same_drive(model, given, *first, *second) {
                     pairs.push((first.1.anchor.min(second.1.anchor), first.1.anchor.max(second.1.anchor)));
                 }
             }
@@ -326,7 +345,7 @@ fn exclusive_uses(model: &UnitModel, values: &FxHashMap<u32, ExprId>) -> Vec<(u3
 /// conditional write of the same unit overrides.
 fn same_drive(
     model: &UnitModel,
-    values: &FxHashMap<u32, ExprId>,
+    given: &Given,
     first: (u32, &Access),
     second: (u32, &Access),
 ) -> bool {
@@ -337,7 +356,8 @@ fn same_drive(
     if first.1.statement == second.1.statement {
         return true;
     }
-    let default = values.get(&first.0).is_some_and(|&it| matches!(model.exprs.get(it), Expr::Bool(_) | Expr::Int(_)));
+    let value = given.values.get(first.0 as usize).copied().flatten();
+    let default = value.is_some_and(|it| matches!(model.exprs.get(it), Expr::Bool(_) | Expr::Int(_)));
     if default && a.path != b.path && model.exprs.has_conjunct_prefix(b.path, a.path) {
         return true;
     }
@@ -434,7 +454,7 @@ mod tests {
         let language = Language::Awl(Mnemonics::German);
         let parse = syntax::parse(language, text);
         assert_eq!(parse.errors(), [], "{text}");
-        UnitFacts::new(&lower::lower(&parse.syntax(), text, Entity::Listing, language))
+        UnitFacts::new(&lower::lower(parse.syntax(), text, Entity::Listing, language))
     }
 
     fn starts(text: &str) -> Vec<u32> {

@@ -195,7 +195,7 @@ mod tests {
         let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
         let parse = syntax::parse(language, text);
         assert_eq!(parse.errors(), []);
-        UnitFacts::new(&lower::lower(&parse.syntax(), text, entity, language))
+        UnitFacts::new(&lower::lower(parse.syntax(), text, entity, language))
     }
 
     fn table(text: &str) -> SymbolTable {

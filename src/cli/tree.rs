@@ -4,13 +4,13 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use rowan::{NodeOrToken, TextSize, WalkEvent};
+use rowan::TextSize;
 
 use super::{Exit, Failure, dialect, print};
 use crate::source::decode::Encoding;
 use crate::source::detect::{Dialect, FileHint, load};
 use crate::source::split::{SplitHint, split};
-use crate::syntax::{self, Parse};
+use crate::syntax::{self, Parse, WalkEvent};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -49,15 +49,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// Writes a tree with the ranges of the file, then what is wrong with the text.
 fn write(parse: &Parse, start: TextSize, out: &mut dyn Write) -> io::Result<()> {
     let mut depth = 1;
-    for event in parse.syntax().preorder_with_tokens() {
+    for event in parse.syntax().walk() {
         match event {
-            WalkEvent::Leave(NodeOrToken::Node(_)) => depth -= 1,
-            WalkEvent::Leave(NodeOrToken::Token(_)) => {}
-            WalkEvent::Enter(NodeOrToken::Node(node)) => {
+            WalkEvent::Leave(_) => depth -= 1,
+            WalkEvent::Enter(node) => {
                 writeln!(out, "{:indent$}{:?}@{:?}", "", node.kind(), node.text_range() + start, indent = 2 * depth)?;
                 depth += 1;
             }
-            WalkEvent::Enter(NodeOrToken::Token(token)) => {
+            WalkEvent::Token(token) => {
                 let (kind, range, text) = (token.kind(), token.text_range() + start, token.text());
                 writeln!(out, "{:indent$}{kind:?}@{range:?} {text:?}", "", indent = 2 * depth)?;
             }

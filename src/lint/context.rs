@@ -13,6 +13,9 @@ use crate::model::pl7_kinds::Kinds;
 use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
 use crate::target::Target;
 
+/// Nodes with their parents.
+type NodesByKind<'a> = FxHashMap<SyntaxKind, Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>>;
+
 /// One unit: its model, its tree, its text. Places are ranges relative to the unit.
 pub struct UnitCx<'a> {
     pub model: &'a UnitModel,
@@ -20,8 +23,8 @@ pub struct UnitCx<'a> {
     pub text: &'a str,
     pub settings: &'a Settings,
     pub target: &'a Target,
-    nodes: OnceCell<FxHashMap<SyntaxKind, Vec<SyntaxNode>>>,
-    kinds: OnceCell<Kinds>,
+    nodes: OnceCell<NodesByKind<'a>>,
+    kinds: Kinds<'a>,
 }
 
 impl<'a> UnitCx<'a> {
@@ -32,27 +35,44 @@ impl<'a> UnitCx<'a> {
         settings: &'a Settings,
         target: &'a Target,
     ) -> Self {
-        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: OnceCell::new() }
+        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: Kinds::default() }
     }
 
     /// Every node of a kind, in the order of the text; none for objects, names, literals and instructions. The tree is
     /// walked once for all rules.
-    pub fn nodes(&self, kind: SyntaxKind) -> &[SyntaxNode] {
+    pub fn nodes(&self, kind: SyntaxKind) -> impl Iterator<Item = SyntaxNode<'a>> {
+        self.nodes_in(kind).iter().map(|it| it.1)
+    }
+
+    /// As [`Self::nodes`], each behind the node that it is a child of.
+    pub fn nodes_in(&self, kind: SyntaxKind) -> &[(SyntaxNode<'a>, SyntaxNode<'a>)] {
         let nodes = self.nodes.get_or_init(|| {
-            let mut nodes: FxHashMap<SyntaxKind, Vec<SyntaxNode>> = FxHashMap::default();
-            for node in self.parse.syntax().descendants() {
+            let mut nodes = NodesByKind::default();
+            let root = self.parse.syntax();
+            let mut open = vec![(root, root.children_with_tokens())];
+            while let Some((parent, children)) = open.last_mut() {
+                let Some(child) = children.next() else {
+                    open.pop();
+                    continue;
+                };
+                let Some(node) = child.into_node() else { continue };
                 let kind = node.kind();
                 // Leaves are by far the most, and no rule asks for all of them.
-                if !matches!(
-                    kind,
-                    SyntaxKind::ObjectRef
-                        | SyntaxKind::NameRef
-                        | SyntaxKind::Literal
-                        | SyntaxKind::IlInstr
-                        | SyntaxKind::Instr
-                ) {
-                    nodes.entry(kind).or_default().push(node);
+                let is_leaf = match kind {
+                    SyntaxKind::Literal => continue,
+                    SyntaxKind::ObjectRef | SyntaxKind::NameRef => {
+                        if node.children().next().is_none() {
+                            continue;
+                        }
+                        true
+                    }
+                    SyntaxKind::IlInstr | SyntaxKind::Instr => true,
+                    _ => false,
+                };
+                if !is_leaf {
+                    nodes.entry(kind).or_default().push((*parent, node));
                 }
+                open.push((node, node.children_with_tokens()));
             }
             nodes
         });
@@ -61,12 +81,12 @@ impl<'a> UnitCx<'a> {
 
     /// Whether the author left parts of the unit out (`...`), as listings in documents do.
     pub fn leaves_out(&self) -> bool {
-        self.parse.syntax().descendants_with_tokens().any(|it| it.kind() == SyntaxKind::Elision)
+        self.parse.syntax().descendant_tokens().any(|it| it.kind() == SyntaxKind::Elision)
     }
 
-    /// Kinds of values of PL7 expressions. The tree is walked once for all rules.
-    pub fn kinds(&self) -> &Kinds {
-        self.kinds.get_or_init(|| Kinds::new(&self.parse.syntax()))
+    /// Kinds of values of PL7 expressions.
+    pub fn kinds(&self) -> &Kinds<'a> {
+        &self.kinds
     }
 
     /// Text of a place; empty when the range is not one.

@@ -1,13 +1,15 @@
 //! Kinds of values of PL7 expressions, as far as addresses, constants and the table of functions tell.
 
-use rowan::ast::AstNode as _;
+use crate::syntax::AstNode as _;
+use std::cell::RefCell;
+
 use rustc_hash::FxHashMap;
 
 use super::literal::{self, Value};
 use super::object::{self, Type};
 use crate::syntax::pl7::ast::{BinOp, Expr, UnaryOp};
 use crate::syntax::pl7::functions;
-use crate::syntax::{SyntaxKind, SyntaxNode};
+use crate::syntax::{SyntaxKind, SyntaxNode, WalkEvent};
 
 /// What kind of value an expression has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -101,36 +103,40 @@ impl Kind {
     }
 }
 
-/// The kind of every expression of a tree.
+/// Kinds of the expressions of a tree, as they are asked for.
 #[derive(Debug, Default)]
-pub struct Kinds {
-    kinds: FxHashMap<SyntaxNode, Kind>,
+pub struct Kinds<'t> {
+    known: RefCell<FxHashMap<SyntaxNode<'t>, Kind>>,
 }
 
-impl Kinds {
-    /// One walk over the tree, operands before what they are operands of.
-    pub fn new(root: &SyntaxNode) -> Self {
-        let mut it = Self::default();
-        for event in root.preorder() {
-            if let rowan::WalkEvent::Leave(node) = event
-                && let Some(expr) = Expr::cast(node.clone())
+impl<'t> Kinds<'t> {
+    /// Walks an expression once, operands before what they are operands of.
+    pub fn of(&self, expr: Expr<'t>) -> Kind {
+        if let Some(kind) = self.known(expr) {
+            return kind;
+        }
+        for event in expr.syntax().walk() {
+            if let WalkEvent::Leave(node) = event
+                && let Some(inner) = Expr::cast(node)
+                && self.known(inner).is_none()
             {
-                let kind = it.compute(&expr);
-                it.kinds.insert(node, kind);
+                let kind = self.compute(inner);
+                self.known.borrow_mut().insert(node, kind);
             }
         }
-        it
+        self.operand(Some(expr))
     }
 
-    pub fn of(&self, expr: &Expr) -> Kind {
-        self.kinds.get(expr.syntax()).copied().unwrap_or(Kind::Unknown)
+    fn known(&self, expr: Expr<'t>) -> Option<Kind> {
+        self.known.borrow().get(&expr.syntax()).copied()
     }
 
-    fn optional(&self, expr: Option<Expr>) -> Kind {
-        expr.map_or(Kind::Unknown, |it| self.of(&it))
+    /// Kind of an operand, whose turn was before.
+    fn operand(&self, expr: Option<Expr<'t>>) -> Kind {
+        expr.and_then(|it| self.known(it)).unwrap_or(Kind::Unknown)
     }
 
-    fn compute(&self, expr: &Expr) -> Kind {
+    fn compute(&self, expr: Expr<'t>) -> Kind {
         match expr {
             Expr::Literal(it) => it.token().map_or(Kind::Unknown, |token| match token.kind() {
                 SyntaxKind::CharString => Kind::Text,
@@ -149,22 +155,22 @@ impl Kinds {
                 object.map_or(Kind::Unknown, |it| Kind::of_type(it.ty))
             }
             Expr::Name(_) => Kind::Unknown,
-            Expr::Paren(it) => self.optional(it.expr()),
+            Expr::Paren(it) => self.operand(it.expr()),
             Expr::Unary(it) => match it.op() {
                 Some(UnaryOp::Re | UnaryOp::Fe) => Kind::Bit,
-                _ => self.optional(it.operand()),
+                _ => self.operand(it.operand()),
             },
             Expr::Bin(it) => match it.op() {
                 Some(op) if op.is_comparison() => Kind::Bit,
                 Some(BinOp::Assign) | None => Kind::Unknown,
-                Some(_) => join(self.optional(it.lhs()), self.optional(it.rhs())),
+                Some(_) => join(self.operand(it.lhs()), self.operand(it.rhs())),
             },
             Expr::Call(it) => {
                 let Some(function) = it.function() else { return Kind::Unknown };
                 match function.result {
                     // The result is of the operand's kind: `SQRT`, `ABS`, `SHL` (PL7:3603-3642).
                     Some(functions::Kind::Number | functions::Kind::Integer) => {
-                        match it.arguments().into_iter().next().flatten().map(|it| self.of(&it)) {
+                        match it.arguments().into_iter().next().flatten().and_then(|it| self.known(it)) {
                             Some(kind @ (Kind::Word | Kind::Double | Kind::Integer | Kind::Float)) => kind,
                             Some(Kind::IntegerTable) => Kind::Integer,
                             _ => Kind::Unknown,
@@ -206,8 +212,6 @@ fn join(a: Kind, b: Kind) -> Kind {
 
 #[cfg(test)]
 mod tests {
-    use rowan::ast::support;
-
     use super::*;
     use crate::syntax::pl7::ast;
 
@@ -215,11 +219,11 @@ mod tests {
         let parse = crate::syntax::pl7::parse_st(&format!("! Sym := {value};"));
         assert_eq!(parse.errors(), [], "{value}");
         let root = parse.syntax();
-        let kinds = Kinds::new(&root);
+        let kinds = Kinds::default();
         let mut assignments = root.descendants().filter_map(ast::AssignStmt::cast);
         let statement = assignments.next().expect("an assignment");
-        let value: Option<Expr> = support::children(statement.syntax()).nth(1);
-        kinds.of(&value.expect("a value"))
+        let value: Option<Expr> = statement.children().nth(1);
+        kinds.of(value.expect("a value"))
     }
 
     #[test]

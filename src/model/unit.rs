@@ -459,6 +459,8 @@ pub struct UnitModel {
     pub writes_indirectly: bool,
     /// Some instruction or statement was not understood: it may do anything.
     pub has_gaps: bool,
+    /// Some operand is a floating-point number, or some function makes or takes one.
+    pub has_floats: bool,
 }
 
 impl UnitModel {

@@ -8,9 +8,8 @@ use SyntaxKind::{
     Semicolon, TypeRef, VarDecl, VarName, VarSection,
 };
 use logos::{Lexer, Logos};
-use rowan::ast::{AstChildren, AstNode, support};
 
-use super::{Parse, Parser, Plc, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken, Token};
+use super::{AstNode, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
@@ -300,63 +299,54 @@ fn at_next(p: &Parser<'_>) -> bool {
 }
 
 /// `[SOURCE_UNIT]` and what belongs to it.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Block {
-    syntax: SyntaxNode,
-}
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Block<'t>(SyntaxNode<'t>);
 
-impl AstNode for Block {
-    type Language = Plc;
-
+impl<'t> AstNode<'t> for Block<'t> {
     fn can_cast(kind: SyntaxKind) -> bool {
         kind == ExchangeBlock
     }
 
-    fn cast(syntax: SyntaxNode) -> Option<Self> {
-        Self::can_cast(syntax.kind()).then_some(Self { syntax })
+    fn cast(node: SyntaxNode<'t>) -> Option<Self> {
+        Self::can_cast(node.kind()).then_some(Self(node))
     }
 
-    fn syntax(&self) -> &SyntaxNode {
-        &self.syntax
+    fn syntax(self) -> SyntaxNode<'t> {
+        self.0
     }
 }
 
-impl Block {
+impl<'t> Block<'t> {
     /// The blocks of a unit, in order.
-    pub fn all(root: &SyntaxNode) -> AstChildren<Self> {
-        support::children(root)
+    pub fn all(root: SyntaxNode<'t>) -> impl Iterator<Item = Self> {
+        root.children().filter_map(Self::cast)
     }
 
     /// `[SOURCE_UNIT]`, brackets included.
-    pub fn mark(&self) -> Option<SyntaxToken> {
-        support::token(&self.syntax, BlockMark)
+    pub fn mark(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(BlockMark)
     }
 
     /// Whether the block has that name, written without brackets and in any case.
-    pub fn is_called(&self, name: &str) -> bool {
+    pub fn is_called(self, name: &str) -> bool {
         self.mark().is_some_and(|it| it.text().trim_matches(['[', ']']).trim().eq_ignore_ascii_case(name))
     }
 
-    pub fn value(&self, key: &str) -> Option<String> {
-        value(&self.syntax, key)
+    pub fn value(self, key: &str) -> Option<String> {
+        value(self.0, key)
     }
 }
 
 /// Value of the first `key` among the children of a block or a root, in any case: the text behind the `=` without
 /// quotes, comments and blanks around it. `None` if the key is not there, empty if it has no value.
-pub fn value(parent: &SyntaxNode, key: &str) -> Option<String> {
-    let is_key = |it: &SyntaxNode| {
-        it.kind() == KeyValue && support::token::<Plc>(it, Ident).is_some_and(|it| it.text().eq_ignore_ascii_case(key))
+pub fn value(parent: SyntaxNode<'_>, key: &str) -> Option<String> {
+    let is_key = |it: &SyntaxNode<'_>| {
+        let mut words = it.tokens().filter(|it| it.kind() == Ident);
+        it.kind() == KeyValue && words.next().is_some_and(|it| it.text().eq_ignore_ascii_case(key))
     };
     let pair = parent.children().find(is_key)?;
-    let mut text = String::new();
-    for element in pair.children_with_tokens().skip_while(|it| it.kind() != Eq).skip(1) {
-        match element {
-            SyntaxElement::Token(it) if it.kind() == Comment => {}
-            SyntaxElement::Token(it) => text.push_str(it.text()),
-            SyntaxElement::Node(_) => {}
-        }
-    }
+    let behind = pair.tokens().skip_while(|it| it.kind() != Eq).skip(1);
+    let text: String = behind.filter(|it| it.kind() != Comment).map(SyntaxToken::text).collect();
     let trimmed = text.trim();
     let inner = trimmed.strip_prefix('\'').map_or(trimmed, |it| it.strip_suffix('\'').unwrap_or(it));
     Some(inner.trim().to_owned())
@@ -375,7 +365,7 @@ mod tests {
     fn keys_and_values() {
         let parse = parse(MODULE);
         assert_eq!(parse.errors(), []);
-        let blocks: Vec<_> = Block::all(&parse.syntax()).collect();
+        let blocks: Vec<_> = Block::all(parse.syntax()).collect();
         assert_eq!(blocks.len(), 4);
         let [header, application, vendor, unit] = &blocks[..] else { panic!("four blocks") };
         assert!(header.is_called("header") && unit.is_called("SOURCE_UNIT"));
@@ -397,7 +387,8 @@ mod tests {
     fn variables() {
         let text = "[DATA_UNIT]\nVAR_GLOBAL\nPump AT %M0 : EBOOL (*a (b) *); Cpt_vis : Cpt_pieces;\n\
             Lim AT %KW3 : WORD := 16#FF;\nEND_VAR\n[EOF]\n";
-        let root = parse(text).syntax();
+        let parse = parse(text);
+        let root = parse.syntax();
         let declarations: Vec<_> = root.descendants().filter(|it| it.kind() == VarDecl).collect();
         let parts = |at: usize| {
             let texts = declarations[at].children().map(|it| (it.kind(), it.text().to_string()));
@@ -407,7 +398,7 @@ mod tests {
         assert_eq!(parts(0), [(VarName, "Pump".into()), (ObjectRef, "%M0".into()), (TypeRef, "EBOOL".into())]);
         assert_eq!(parts(1), [(VarName, "Cpt_vis".into()), (TypeRef, "Cpt_pieces".into())]);
         assert_eq!(parts(2)[2..], [(TypeRef, "WORD".into()), (InitValue, "16#FF".into())]);
-        assert_eq!(Block::all(&root).count(), 2);
+        assert_eq!(Block::all(root).count(), 2);
     }
 
     #[test]

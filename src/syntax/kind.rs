@@ -178,22 +178,9 @@ impl From<SyntaxKind> for rowan::SyntaxKind {
     }
 }
 
-/// The one rowan language of the crate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Plc {}
-
-impl rowan::Language for Plc {
-    type Kind = SyntaxKind;
-
-    fn kind_from_raw(raw: rowan::SyntaxKind) -> SyntaxKind {
-        KINDS[usize::from(raw.0)]
-    }
-
-    fn kind_to_raw(kind: SyntaxKind) -> rowan::SyntaxKind {
-        kind.into()
+impl From<rowan::SyntaxKind> for SyntaxKind {
+    /// Of a number that is no kind: [`SyntaxKind::Error`].
+    fn from(raw: rowan::SyntaxKind) -> Self {
+        KINDS.get(usize::from(raw.0)).copied().unwrap_or(Self::Error)
     }
 }
-
-pub type SyntaxNode = rowan::SyntaxNode<Plc>;
-pub type SyntaxToken = rowan::SyntaxToken<Plc>;
-pub type SyntaxElement = rowan::SyntaxElement<Plc>;

@@ -6,13 +6,15 @@
 
 mod builder;
 mod kind;
+mod node;
 mod parser;
 
 pub mod awl;
 pub mod exchange;
 pub mod pl7;
 
-pub use kind::{Plc, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
+pub use kind::SyntaxKind;
+pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
 pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError, Token};
 
 /// Mnemonic set of a Siemens program: the same word means different things in the two (`SE`, `A`, `AD`, `E`).

@@ -7,7 +7,8 @@
 use rowan::{GreenNode, TextRange, TextSize};
 
 use super::builder::TreeBuilder;
-use super::kind::{SyntaxKind, SyntaxNode};
+use super::kind::SyntaxKind;
+use super::node::SyntaxNode;
 
 /// Nesting beyond this is reported once and read flat, so that no input can exhaust the stack.
 pub const MAX_DEPTH: u32 = 128;
@@ -34,9 +35,9 @@ pub struct Parse {
 }
 
 impl Parse {
-    /// The root. Green trees can be shared between threads; this view of one cannot.
-    pub fn syntax(&self) -> SyntaxNode {
-        SyntaxNode::new_root(self.green.clone())
+    /// The root.
+    pub fn syntax(&self) -> SyntaxNode<'_> {
+        SyntaxNode::new_root(&self.green)
     }
 
     pub fn errors(&self) -> &[SyntaxError] {

@@ -6,8 +6,8 @@
 //! and after them the RLO stays readable. `L`, `T` and arithmetic neither read nor change it (S7:357). `SET`, `CLR` and
 //! comparisons overwrite it (S7:447). A conditional jump or block end leaves RLO 1 behind.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -27,7 +27,7 @@ use crate::syntax::{Language, Mnemonics, SyntaxKind, SyntaxNode};
 use crate::target;
 
 /// Lowers one block or listing.
-pub fn lower(root: &SyntaxNode, entity: Entity, mnemonics: Mnemonics) -> UnitModel {
+pub fn lower(root: SyntaxNode<'_>, entity: Entity, mnemonics: Mnemonics) -> UnitModel {
     let heading = heading(root);
     let mut machine = Machine {
         b: Builder::new(entity, Language::Awl(mnemonics), heading),
@@ -52,7 +52,7 @@ pub fn lower(root: &SyntaxNode, entity: Entity, mnemonics: Mnemonics) -> UnitMod
     machine.br = machine.b.exprs().opaque();
     for child in root.children() {
         match child.kind() {
-            SyntaxKind::Block | SyntaxKind::Listing => machine.block(&child),
+            SyntaxKind::Block | SyntaxKind::Listing => machine.block(child),
             _ => {}
         }
     }
@@ -199,7 +199,7 @@ struct Machine {
 }
 
 impl Machine {
-    fn block(&mut self, block: &SyntaxNode) {
+    fn block(&mut self, block: SyntaxNode<'_>) {
         self.closed = block.kind() == SyntaxKind::Block;
         self.declarations(block);
         self.b.model.instance_of = instance_of(block);
@@ -297,7 +297,7 @@ impl Machine {
 
     // Declarations.
 
-    fn declarations(&mut self, block: &SyntaxNode) {
+    fn declarations(&mut self, block: SyntaxNode<'_>) {
         for section in block.children().filter_map(ast::VarSection::cast) {
             let Some(keyword) = section.keyword() else { continue };
             let kind = match keyword.text().to_ascii_uppercase().as_str() {
@@ -896,7 +896,7 @@ impl Machine {
             anchor,
             when,
             instance,
-            instance_range: instance_node.as_ref().map(ast::Operand::range),
+            instance_range: instance_node.map(ast::Operand::range),
             arguments,
             full: op == Op::Call,
         };
@@ -1347,7 +1347,7 @@ impl Machine {
 const LOST_TOO: &str = "this value is lost too";
 
 /// Labels that a jump below them goes to.
-fn back_targets(block: &SyntaxNode, mnemonics: Mnemonics) -> FxHashSet<SmolStr> {
+fn back_targets(block: SyntaxNode<'_>, mnemonics: Mnemonics) -> FxHashSet<SmolStr> {
     let mut labels: FxHashSet<SmolStr> = FxHashSet::default();
     let mut back = FxHashSet::default();
     for network in block.children().filter_map(ast::Network::cast) {
@@ -1368,7 +1368,7 @@ fn back_targets(block: &SyntaxNode, mnemonics: Mnemonics) -> FxHashSet<SmolStr> 
 }
 
 /// The block's header, or its first instruction.
-fn heading(root: &SyntaxNode) -> TextRange {
+fn heading(root: SyntaxNode<'_>) -> TextRange {
     let block = root.children().find(|it| matches!(it.kind(), SyntaxKind::Block | SyntaxKind::Listing));
     let header = block.as_ref().and_then(|it| it.children().find_map(ast::BlockHeader::cast));
     match header {
@@ -1378,8 +1378,8 @@ fn heading(root: &SyntaxNode) -> TextRange {
 }
 
 /// Of a data block: the function block whose data it holds.
-fn instance_of(block: &SyntaxNode) -> Option<BlockName> {
-    let block = ast::Block::cast(block.clone())?;
+fn instance_of(block: SyntaxNode<'_>) -> Option<BlockName> {
+    let block = ast::Block::cast(block)?;
     if !block.header()?.keyword()?.text().eq_ignore_ascii_case("DATA_BLOCK") {
         return None;
     }
@@ -1516,7 +1516,7 @@ mod tests {
     fn model(text: &str) -> UnitModel {
         let parse = crate::syntax::awl::parse(text, Mnemonics::German);
         assert_eq!(parse.errors(), [], "{text}");
-        lower(&parse.syntax(), Entity::Listing, Mnemonics::German)
+        lower(parse.syntax(), Entity::Listing, Mnemonics::German)
     }
 
     fn block(code: &str) -> UnitModel {
@@ -1653,7 +1653,7 @@ mod tests {
         let parse =
             crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
         let name = BlockName::Number(BlockKind::Ob, 1);
-        let model = lower(&parse.syntax(), Entity::Block { kind: BlockKind::Ob, name }, Mnemonics::German);
+        let model = lower(parse.syntax(), Entity::Block { kind: BlockKind::Ob, name }, Mnemonics::German);
         assert_eq!(model.oddities.len(), 1, "nobody called it");
     }
 

@@ -1,7 +1,11 @@
 //! What every lowering shares: objects, versions of values, paths to statements, labels and jumps.
 
+use std::hash::BuildHasher as _;
+
 use rowan::TextRange;
-use rustc_hash::{FxHashMap, FxHashSet};
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use crate::model::entity::Entity;
@@ -19,7 +23,8 @@ use crate::syntax::Language;
 /// branches and ends; statements take the path of the moment.
 pub(super) struct Builder {
     pub(super) model: UnitModel,
-    ids: FxHashMap<Object, ObjectId>,
+    /// Objects by their text; most texts name one object, whatever else is to tell two apart.
+    ids: HashTable<ObjectId>,
     /// Area of each object, interned.
     areas: FxHashMap<Area, u32>,
     area_of: Vec<u32>,
@@ -84,10 +89,11 @@ impl Builder {
             reads_indirectly: false,
             writes_indirectly: false,
             has_gaps: false,
+            has_floats: false,
         };
         Self {
             model,
-            ids: FxHashMap::default(),
+            ids: HashTable::new(),
             areas: FxHashMap::default(),
             area_of: Vec::new(),
             writes: FxHashMap::default(),
@@ -126,15 +132,22 @@ impl Builder {
     // Objects and accesses.
 
     pub(super) fn object(&mut self, object: Object) -> ObjectId {
-        if let Some(&id) = self.ids.get(&object) {
-            return id;
-        }
-        let id = ObjectId(index(self.model.objects.len()));
+        let objects = &self.model.objects;
+        let hash = |object: &Object| FxBuildHasher.hash_one(&object.text);
+        let id = ObjectId(index(objects.len()));
+        let found = self.ids.entry(
+            hash(&object),
+            |it| objects[it.0 as usize] == object,
+            |it| hash(&objects[it.0 as usize]),
+        );
+        match found {
+            Entry::Occupied(found) => return *found.get(),
+            Entry::Vacant(entry) => entry.insert(id),
+        };
         let next = index(self.areas.len());
         let area = *self.areas.entry(object.footprint.area.clone()).or_insert(next);
         self.area_of.push(area);
-        self.model.objects.push(object.clone());
-        self.ids.insert(object, id);
+        self.model.objects.push(object);
         id
     }
 

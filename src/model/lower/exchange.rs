@@ -11,12 +11,12 @@ use crate::model::symbols::{Remark, RemarkKind, Symbol};
 use crate::model::unit::OddityKind;
 use crate::syntax::{Language, SyntaxKind, SyntaxNode};
 
-pub(super) fn lower(root: &SyntaxNode, text: &str, entity: Entity) -> UnitModel {
+pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     let mut lowering = Lowering { b: Builder::new(entity, Language::Exchange, TextRange::default()), text };
     for node in root.descendants() {
         match node.kind() {
-            SyntaxKind::VarDecl => lowering.declaration(&node),
-            SyntaxKind::KeyValue => lowering.key_value(&node),
+            SyntaxKind::VarDecl => lowering.declaration(node),
+            SyntaxKind::KeyValue => lowering.key_value(node),
             _ => {}
         }
     }
@@ -34,17 +34,17 @@ impl Lowering<'_> {
     }
 
     /// Text without the blanks in it.
-    fn joined(&self, node: &SyntaxNode) -> SmolStr {
+    fn joined(&self, node: SyntaxNode<'_>) -> SmolStr {
         self.slice(node.text_range()).split_whitespace().collect::<String>().into()
     }
 
-    fn declaration(&mut self, node: &SyntaxNode) {
+    fn declaration(&mut self, node: SyntaxNode<'_>) {
         let child = |kind| node.children().find(|it| it.kind() == kind);
         let Some(name) = child(SyntaxKind::VarName) else { return };
         let range = name.text_range();
         let address = child(SyntaxKind::ObjectRef);
         let object = address.and_then(|it| {
-            let (address, at) = (self.joined(&it), it.text_range());
+            let (address, at) = (self.joined(it), it.text_range());
             match object::pl7::parse(&address) {
                 Ok(object) => Some(object),
                 // The generic symbol of a channel (PL7:1264) names no single object.
@@ -59,8 +59,8 @@ impl Lowering<'_> {
         let symbol = Symbol {
             name: self.slice(range).into(),
             object,
-            ty: child(SyntaxKind::TypeRef).map(|it| self.joined(&it)).unwrap_or_default(),
-            initial: child(SyntaxKind::InitValue).map(|it| self.joined(&it)),
+            ty: child(SyntaxKind::TypeRef).map(|it| self.joined(it)).unwrap_or_default(),
+            initial: child(SyntaxKind::InitValue).map(|it| self.joined(it)),
             comment: comment.map(|it| self.slice(it).into()),
             anchor: self.b.anchor(range),
         };
@@ -68,8 +68,8 @@ impl Lowering<'_> {
     }
 
     /// `COMMENT = '...'` of a source unit.
-    fn key_value(&mut self, node: &SyntaxNode) {
-        let token = |kind| node.children_with_tokens().find(|it| it.kind() == kind).map(|it| it.text_range());
+    fn key_value(&mut self, node: SyntaxNode<'_>) {
+        let token = |kind| node.tokens().find(|it| it.kind() == kind).map(|it| it.text_range());
         let Some(key) = token(SyntaxKind::Ident) else { return };
         if self.slice(key).eq_ignore_ascii_case("COMMENT")
             && let Some(value) = token(SyntaxKind::CharString)
@@ -79,8 +79,8 @@ impl Lowering<'_> {
     }
 
     /// The comment of a declaration: before its semicolon, else behind it on the same line.
-    fn comment(&self, node: &SyntaxNode) -> Option<TextRange> {
-        if let Some(it) = node.children_with_tokens().find(|it| it.kind() == SyntaxKind::Comment) {
+    fn comment(&self, node: SyntaxNode<'_>) -> Option<TextRange> {
+        if let Some(it) = node.tokens().find(|it| it.kind() == SyntaxKind::Comment) {
             return Some(it.text_range());
         }
         let behind = self.text.get(usize::from(node.text_range().end())..)?;

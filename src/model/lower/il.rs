@@ -3,8 +3,8 @@
 //! Each sentence starts with an `LD` or an unconditional instruction (PL7:3319), so that no result passes from one
 //! sentence to another, and none along a jump.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 use smol_str::SmolStr;
 
 use super::builder::index;
@@ -19,7 +19,7 @@ use crate::syntax::pl7::instructions::{self, IlOp};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
-pub(super) fn lower(root: &SyntaxNode, text: &str, entity: Entity) -> UnitModel {
+pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     // A receptivity is a list of tests alone (PL7:4713-4749).
     let tests_only = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
         || is_bare_receptivity(root);
@@ -37,7 +37,7 @@ pub(super) fn lower(root: &SyntaxNode, text: &str, entity: Entity) -> UnitModel 
         forgotten: false,
     };
     lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
-    if let Some(root) = ast::Root::cast(root.clone()) {
+    if let Some(root) = ast::Root::cast(root) {
         for sentence in root.sentences() {
             lowering.sentence(&sentence);
         }
@@ -47,8 +47,8 @@ pub(super) fn lower(root: &SyntaxNode, text: &str, entity: Entity) -> UnitModel 
 }
 
 /// One sentence of tests without a heading: what documents print of a receptivity.
-fn is_bare_receptivity(root: &SyntaxNode) -> bool {
-    let Some(root) = ast::Root::cast(root.clone()) else { return false };
+fn is_bare_receptivity(root: SyntaxNode<'_>) -> bool {
+    let Some(root) = ast::Root::cast(root) else { return false };
     let mut sentences = root.sentences();
     let (Some(only), None) = (sentences.next(), sentences.next()) else { return false };
     root.headings().next().is_none()
@@ -108,7 +108,7 @@ impl Lowering {
                 SyntaxElement::Token(_) => {}
                 SyntaxElement::Node(it) if it.kind() == SyntaxKind::Error => self.forget(),
                 SyntaxElement::Node(it) => {
-                    if let Some(instr) = ast::IlInstr::cast(it.clone()) {
+                    if let Some(instr) = ast::IlInstr::cast(it) {
                         self.instruction(&instr);
                     } else if let Some(label) = ast::LabelDef::cast(it) {
                         let text = label.token().map(|it| SmolStr::new(it.text())).unwrap_or_default();
@@ -352,7 +352,7 @@ impl Lowering {
                     crate::model::expr::Expr::Int(1) => Exprs::TRUE,
                     _ => {
                         let at = it.syntax().text_range();
-                        let text = it.syntax().text().to_string();
+                        let text = it.syntax().text().into_owned();
                         let message =
                             format!("`{}` takes a bit or a comparison, and `{text}` is neither", op.info().mnemonic);
                         self.operand_type(message, at, text);
@@ -366,7 +366,7 @@ impl Lowering {
                         let at = it.syntax().text_range();
                         let message =
                             format!("`{}` takes a comparison in its brackets, not a number", op.info().mnemonic);
-                        self.operand_type(message, at, it.syntax().text().to_string());
+                        self.operand_type(message, at, it.syntax().text().into_owned());
                         self.pl7.b.exprs().opaque()
                     }
                     (value, _) => value,
@@ -508,7 +508,7 @@ impl Lowering {
             Some(IlOperand::Name(it)) => Some(self.pl7.name_ref(&it)),
             Some(IlOperand::Literal(it)) => {
                 let at = it.syntax().text_range();
-                let text = it.syntax().text().to_string();
+                let text = it.syntax().text().into_owned();
                 let message = format!("`{}` writes a bit, and `{text}` is a constant", op.info().mnemonic);
                 self.operand_type(message, at, text);
                 let _ = self.used(false);
@@ -711,7 +711,7 @@ const OUTPUTS: &[&str] = &["Q", "R", "D", "E", "F"];
 
 /// Whether dots stand in place of an operand (PL7:3124).
 fn is_elided(expr: &ast::Expr) -> bool {
-    expr.syntax().descendants_with_tokens().any(|it| it.kind() == SyntaxKind::Elision)
+    expr.syntax().descendant_tokens().any(|it| it.kind() == SyntaxKind::Elision)
 }
 
 fn describe(ty: Type) -> &'static str {
@@ -738,7 +738,7 @@ mod tests {
 
     fn part(text: &str, part: Part) -> UnitModel {
         let parse = crate::syntax::pl7::parse_il(text);
-        lower(&parse.syntax(), text, Entity::Pl7 { task: Task::Mast, section: None, part })
+        lower(parse.syntax(), text, Entity::Pl7 { task: Task::Mast, section: None, part })
     }
 
     fn model(text: &str) -> UnitModel {

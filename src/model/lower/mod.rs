@@ -13,7 +13,7 @@ use super::unit::Pin;
 use crate::syntax::{Language, SyntaxNode};
 
 /// What the code of a unit does. `text` is the tree's text. Total: what is not understood leaves no statement.
-pub fn lower(root: &SyntaxNode, text: &str, entity: Entity, language: Language) -> UnitModel {
+pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Language) -> UnitModel {
     match language {
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
         Language::Pl7Il => il::lower(root, text, entity),

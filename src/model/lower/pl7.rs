@@ -1,7 +1,7 @@
 //! What PL7 instruction list and structured text share: operands, expressions, numeric operations, calls.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
@@ -12,7 +12,8 @@ use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{Argument, Call, Callee, Constant, DeadCause, Leave, Mode, OddityKind, Pin, StatementKind};
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
-use crate::syntax::{Language, SyntaxNode};
+use crate::syntax::pl7::functions::Function;
+use crate::syntax::{Language, SyntaxKind, SyntaxNode, WalkEvent};
 
 /// What kind of value an expression has, as far as it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,19 +31,19 @@ pub(super) struct Pl7 {
 }
 
 /// The heading line, else the first sentence's first token.
-fn heading(root: &SyntaxNode) -> TextRange {
-    let root = ast::Root::cast(root.clone());
+fn heading(root: SyntaxNode<'_>) -> TextRange {
+    let root = ast::Root::cast(root);
     let heading = root.as_ref().and_then(|it| it.headings().next()).map(|it| it.syntax().text_range());
     let first = || {
         let sentence = root.as_ref()?.sentences().next()?;
-        let mut tokens = sentence.syntax().descendants_with_tokens().filter_map(rowan::NodeOrToken::into_token);
+        let mut tokens = sentence.syntax().descendant_tokens();
         Some(tokens.find(|it| !it.kind().is_trivia())?.text_range())
     };
     heading.or_else(first).unwrap_or_default()
 }
 
 impl Pl7 {
-    pub(super) fn new(root: &SyntaxNode, entity: Entity, language: Language) -> Self {
+    pub(super) fn new(root: SyntaxNode<'_>, entity: Entity, language: Language) -> Self {
         Self { b: Builder::new(entity, language, heading(root)), known: FxHashMap::default() }
     }
 
@@ -76,14 +77,17 @@ impl Pl7 {
                     self.expr(&expr);
                 }
                 object::pl7::parse_indexed(&address, it.suffix().as_deref()).map(|mut object| {
-                    object.text = it.syntax().text().to_string().split_whitespace().collect::<String>().into();
+                    object.text = it.syntax().text().into_owned().split_whitespace().collect::<String>().into();
                     object
                 })
             }
             None => object::pl7::parse(&address),
         };
         let id = match parsed {
-            Ok(object) => self.b.object(object),
+            Ok(object) => {
+                self.b.model.has_floats |= matches!(object.ty, Type::Float | Type::FloatTable(_));
+                self.b.object(object)
+            }
             Err(error) => return (self.address_error(error, range, &address), range),
         };
         if is_direct {
@@ -97,7 +101,7 @@ impl Pl7 {
         let range = it.syntax().text_range();
         let path = it.path();
         let indexed = it.index();
-        if let Some(expr) = indexed.as_ref().and_then(ast::Index::expr) {
+        if let Some(expr) = indexed.and_then(ast::Index::expr) {
             self.expr(&expr);
         }
         if let Some(suggestion) = object::pl7::suggest(&path) {
@@ -109,7 +113,7 @@ impl Pl7 {
         let mut object = Object::symbol(&path);
         if indexed.is_some() {
             object.indexed = true;
-            object.text = it.syntax().text().to_string().split_whitespace().collect::<String>().into();
+            object.text = it.syntax().text().into_owned().split_whitespace().collect::<String>().into();
         }
         if let Some(suffix) = it.suffix() {
             object.extracted = suffix.to_ascii_uppercase().starts_with(":X");
@@ -156,7 +160,10 @@ impl Pl7 {
         match literal::parse_pl7(token.text()) {
             Ok(Value::Bool(value)) => (Exprs::bool(value), Kind::Bit),
             Ok(Value::Int { value, .. }) => (self.b.exprs().int(value), Kind::Number),
-            Ok(Value::Real(value)) => (self.b.exprs().float(value), Kind::Number),
+            Ok(Value::Real(value)) => {
+                self.b.model.has_floats = true;
+                (self.b.exprs().float(value), Kind::Number)
+            }
             Ok(Value::Count(value)) => (self.b.exprs().int(i64::from(value)), Kind::Number),
             Ok(value) => {
                 let text = SmolStr::new(token.text());
@@ -273,6 +280,7 @@ impl Pl7 {
 
     fn call_expr(&mut self, it: &ast::CallExpr) -> (ExprId, Kind) {
         let function = it.function();
+        self.b.model.has_floats |= function.is_some_and(Function::has_floats);
         let mut values = Vec::new();
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
@@ -393,6 +401,7 @@ impl Pl7 {
             return;
         }
         let function = it.function();
+        self.b.model.has_floats |= function.is_some_and(Function::has_floats);
         let mut arguments = Vec::new();
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
@@ -484,23 +493,32 @@ impl Pl7 {
 }
 
 /// Labels that a jump below them goes to, for both languages.
-pub(super) fn back_targets(root: &SyntaxNode, text: &str) -> rustc_hash::FxHashSet<SmolStr> {
-    use crate::syntax::SyntaxKind;
+pub(super) fn back_targets(root: SyntaxNode<'_>, text: &str) -> rustc_hash::FxHashSet<SmolStr> {
     let mut labels = rustc_hash::FxHashSet::default();
     let mut back = rustc_hash::FxHashSet::default();
     // Most sections have no label at all.
     if !text.contains("%L") && !text.contains("%l") {
         return back;
     }
-    for token in root.descendants_with_tokens().filter_map(rowan::NodeOrToken::into_token) {
-        if token.kind() != SyntaxKind::LabelAddress {
-            continue;
-        }
+    let mut in_definition = false;
+    for event in root.walk() {
+        let token = match event {
+            WalkEvent::Token(it) if it.kind() == SyntaxKind::LabelAddress => it,
+            WalkEvent::Enter(node) => {
+                in_definition = node.kind() == SyntaxKind::LabelDef;
+                continue;
+            }
+            WalkEvent::Leave(_) => {
+                in_definition = false;
+                continue;
+            }
+            WalkEvent::Token(_) => continue,
+        };
         let name: SmolStr = match ast::label_number(token.text()) {
             Some(number) => number.to_string().into(),
             None => token.text().to_ascii_uppercase().into(),
         };
-        if token.parent().is_some_and(|it| it.kind() == SyntaxKind::LabelDef) {
+        if in_definition {
             labels.insert(name);
         } else if labels.contains(&name) {
             back.insert(name);

@@ -1,7 +1,7 @@
 //! PL7 structured text to the model.
 
+use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rowan::ast::AstNode as _;
 
 use super::builder::index;
 use super::pl7::{self, Pl7};
@@ -13,10 +13,10 @@ use crate::model::unit::{DeadCause, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
 use crate::syntax::{Language, SyntaxNode};
 
-pub(super) fn lower(root: &SyntaxNode, text: &str, entity: Entity) -> UnitModel {
+pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     let mut lowering = Lowering { pl7: Pl7::new(root, entity, Language::Pl7St) };
     lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
-    if let Some(root) = ast::Root::cast(root.clone()) {
+    if let Some(root) = ast::Root::cast(root) {
         for sentence in root.sentences() {
             lowering.pl7.b.next_network();
             for label in sentence.labels() {
@@ -195,8 +195,8 @@ impl Lowering {
 }
 
 /// Range of the keyword that a control structure starts with.
-fn keyword(node: &SyntaxNode) -> TextRange {
-    let mut tokens = node.children_with_tokens().filter_map(rowan::NodeOrToken::into_token);
+fn keyword(node: SyntaxNode<'_>) -> TextRange {
+    let mut tokens = node.tokens();
     tokens.find(|it| !it.kind().is_trivia()).map_or_else(|| node.text_range(), |it| it.text_range())
 }
 
@@ -210,7 +210,7 @@ mod tests {
     fn model(text: &str) -> UnitModel {
         let parse = crate::syntax::pl7::parse_st(text);
         assert_eq!(parse.errors(), [], "{text}");
-        lower(&parse.syntax(), text, Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main })
+        lower(parse.syntax(), text, Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main })
     }
 
     /// What each statement does, with the path to it.

@@ -1,42 +1,11 @@
 //! Typed views of the tree. Every accessor returns `Option` or an iterator: a faulty text lacks anything.
 
 use rowan::TextRange;
-use rowan::ast::{AstNode, support};
 use smol_str::SmolStr;
 
 use super::instruction::{self, Op};
-use crate::syntax::{Mnemonics, Plc, SyntaxKind, SyntaxNode, SyntaxToken};
-
-macro_rules! nodes {
-    ($($(#[$meta:meta])* $name:ident),* $(,)?) => {$(
-        $(#[$meta])*
-        #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-        pub struct $name(SyntaxNode);
-
-        impl AstNode for $name {
-            type Language = Plc;
-
-            fn can_cast(kind: SyntaxKind) -> bool {
-                kind == SyntaxKind::$name
-            }
-
-            fn cast(node: SyntaxNode) -> Option<Self> {
-                Self::can_cast(node.kind()).then_some(Self(node))
-            }
-
-            fn syntax(&self) -> &SyntaxNode {
-                &self.0
-            }
-        }
-
-        impl $name {
-            /// From the first to the last token, without the blanks and comments around.
-            pub fn range(&self) -> TextRange {
-                trimmed_range(&self.0)
-            }
-        }
-    )*};
-}
+use crate::syntax::node::nodes;
+use crate::syntax::{AstNode as _, Mnemonics, SyntaxKind, SyntaxToken};
 
 nodes! {
     /// The whole unit.
@@ -64,24 +33,6 @@ nodes! {
     Arg,
 }
 
-fn tokens(node: &SyntaxNode) -> impl Iterator<Item = SyntaxToken> {
-    node.children_with_tokens().filter_map(rowan::NodeOrToken::into_token).filter(|it| !it.kind().is_trivia())
-}
-
-fn token(node: &SyntaxNode, kind: SyntaxKind) -> Option<SyntaxToken> {
-    tokens(node).find(|it| it.kind() == kind)
-}
-
-fn first_token(node: &SyntaxNode) -> Option<SyntaxToken> {
-    tokens(node).next()
-}
-
-/// The builder puts blanks and comments before the node whose first token they precede, so that a node's own range has
-/// none at its ends.
-fn trimmed_range(node: &SyntaxNode) -> TextRange {
-    node.text_range()
-}
-
 /// The text between quotes, or all of it.
 fn unquoted(text: &str) -> &str {
     let inner = text.strip_prefix('#').unwrap_or(text);
@@ -91,77 +42,77 @@ fn unquoted(text: &str) -> &str {
         .map_or(inner, |it| it.trim_matches([' ', '\t', '\u{A0}', '\u{202F}']))
 }
 
-impl Root {
-    pub fn blocks(&self) -> impl Iterator<Item = Block> + use<> {
-        support::children(&self.0)
+impl<'t> Root<'t> {
+    pub fn blocks(self) -> impl Iterator<Item = Block<'t>> + use<'t> {
+        self.children()
     }
 
-    pub fn listings(&self) -> impl Iterator<Item = Listing> + use<> {
-        support::children(&self.0)
+    pub fn listings(self) -> impl Iterator<Item = Listing<'t>> + use<'t> {
+        self.children()
     }
 }
 
-impl Block {
-    pub fn header(&self) -> Option<BlockHeader> {
-        support::child(&self.0)
+impl<'t> Block<'t> {
+    pub fn header(self) -> Option<BlockHeader<'t>> {
+        self.child()
     }
 
-    pub fn title(&self) -> Option<TitleLine> {
-        support::child(&self.0)
+    pub fn title(self) -> Option<TitleLine<'t>> {
+        self.child()
     }
 
-    pub fn attributes(&self) -> impl Iterator<Item = BlockAttribute> + use<> {
-        support::children(&self.0)
+    pub fn attributes(self) -> impl Iterator<Item = BlockAttribute<'t>> + use<'t> {
+        self.children()
     }
 
     /// The declarations; the `STRUCT` of a data block or type is one of them.
-    pub fn sections(&self) -> impl Iterator<Item = VarSection> + use<> {
-        support::children(&self.0)
+    pub fn sections(self) -> impl Iterator<Item = VarSection<'t>> + use<'t> {
+        self.children()
     }
 
     /// Of a data block: the UDT or function block whose data it holds. Of a function: the type of its return value.
-    pub fn type_ref(&self) -> Option<TypeRef> {
-        support::child(&self.0).or_else(|| self.header()?.return_type())
+    pub fn type_ref(self) -> Option<TypeRef<'t>> {
+        self.child().or_else(|| self.header()?.return_type())
     }
 
-    pub fn data_inits(&self) -> impl Iterator<Item = DataInit> + use<> {
-        support::children(&self.0)
+    pub fn data_inits(self) -> impl Iterator<Item = DataInit<'t>> + use<'t> {
+        self.children()
     }
 
-    pub fn networks(&self) -> impl Iterator<Item = Network> + use<> {
-        support::children(&self.0)
+    pub fn networks(self) -> impl Iterator<Item = Network<'t>> + use<'t> {
+        self.children()
     }
 }
 
-impl Listing {
+impl<'t> Listing<'t> {
     /// `Bloc FC1 :`
-    pub fn header(&self) -> Option<BlockHeader> {
-        support::child(&self.0)
+    pub fn header(self) -> Option<BlockHeader<'t>> {
+        self.child()
     }
 
-    pub fn networks(&self) -> impl Iterator<Item = Network> + use<> {
-        support::children(&self.0)
-    }
-}
-
-impl BlockHeader {
-    pub fn keyword(&self) -> Option<SyntaxToken> {
-        token(&self.0, SyntaxKind::Ident)
-    }
-
-    pub fn name(&self) -> Option<BlockName> {
-        support::child(&self.0)
-    }
-
-    pub fn return_type(&self) -> Option<TypeRef> {
-        support::child(&self.0)
+    pub fn networks(self) -> impl Iterator<Item = Network<'t>> + use<'t> {
+        self.children()
     }
 }
 
-impl BlockName {
+impl<'t> BlockHeader<'t> {
+    pub fn keyword(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
+    }
+
+    pub fn name(self) -> Option<BlockName<'t>> {
+        self.child()
+    }
+
+    pub fn return_type(self) -> Option<TypeRef<'t>> {
+        self.child()
+    }
+}
+
+impl<'t> BlockName<'t> {
     /// `FC 1`, or a symbol without its quotes.
-    pub fn text(&self) -> SmolStr {
-        let mut name = tokens(&self.0);
+    pub fn text(self) -> SmolStr {
+        let mut name = self.significant();
         match (name.next(), name.next()) {
             (Some(word), Some(number)) => smol_str::format_smolstr!("{} {}", word.text(), number.text()),
             (Some(word), None) => unquoted(word.text()).into(),
@@ -169,114 +120,114 @@ impl BlockName {
         }
     }
 
-    pub fn is_symbol(&self) -> bool {
-        token(&self.0, SyntaxKind::QuotedSymbol).is_some()
+    pub fn is_symbol(self) -> bool {
+        self.child_token(SyntaxKind::QuotedSymbol).is_some()
     }
 }
 
-impl TitleLine {
-    pub fn text(&self) -> Option<SyntaxToken> {
-        token(&self.0, SyntaxKind::FreeText)
+impl<'t> TitleLine<'t> {
+    pub fn text(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::FreeText)
     }
 }
 
-impl BlockAttribute {
+impl<'t> BlockAttribute<'t> {
     /// `AUTHOR`, `KNOW_HOW_PROTECT`; nothing for `{...}`.
-    pub fn keyword(&self) -> Option<SyntaxToken> {
-        token(&self.0, SyntaxKind::Ident)
+    pub fn keyword(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
     }
 
-    pub fn value(&self) -> Option<SyntaxToken> {
-        token(&self.0, SyntaxKind::FreeText)
+    pub fn value(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::FreeText)
     }
 
     /// `{S7_attr := '...'}`
-    pub fn system_attributes(&self) -> Option<SyntaxToken> {
-        token(&self.0, SyntaxKind::Attribute)
+    pub fn system_attributes(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Attribute)
     }
 }
 
-impl VarSection {
+impl<'t> VarSection<'t> {
     /// `VAR_INPUT`, `STRUCT`
-    pub fn keyword(&self) -> Option<SyntaxToken> {
-        token(&self.0, SyntaxKind::Ident)
+    pub fn keyword(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
     }
 
-    pub fn decls(&self) -> impl Iterator<Item = VarDecl> + use<> {
-        support::children(&self.0)
+    pub fn decls(self) -> impl Iterator<Item = VarDecl<'t>> + use<'t> {
+        self.children()
     }
 }
 
-impl VarDecl {
-    pub fn names(&self) -> impl Iterator<Item = VarName> + use<> {
-        support::children(&self.0)
+impl<'t> VarDecl<'t> {
+    pub fn names(self) -> impl Iterator<Item = VarName<'t>> + use<'t> {
+        self.children()
     }
 
-    pub fn type_ref(&self) -> Option<TypeRef> {
-        support::child(&self.0)
+    pub fn type_ref(self) -> Option<TypeRef<'t>> {
+        self.child()
     }
 
-    pub fn struct_type(&self) -> Option<StructType> {
-        support::child(&self.0)
+    pub fn struct_type(self) -> Option<StructType<'t>> {
+        self.child()
     }
 
-    pub fn array_type(&self) -> Option<ArrayType> {
-        support::child(&self.0)
+    pub fn array_type(self) -> Option<ArrayType<'t>> {
+        self.child()
     }
 
-    pub fn init(&self) -> Option<InitValue> {
-        support::child(&self.0)
+    pub fn init(self) -> Option<InitValue<'t>> {
+        self.child()
     }
 
     /// `x AT y`: what the variable is a view of.
-    pub fn view_of(&self) -> Option<Operand> {
-        support::child(&self.0)
+    pub fn view_of(self) -> Option<Operand<'t>> {
+        self.child()
     }
 }
 
-impl VarName {
-    pub fn token(&self) -> Option<SyntaxToken> {
-        first_token(&self.0)
+impl<'t> VarName<'t> {
+    pub fn token(self) -> Option<SyntaxToken<'t>> {
+        self.significant().next()
     }
 
     /// Without quotes and `#`.
-    pub fn text(&self) -> SmolStr {
+    pub fn text(self) -> SmolStr {
         self.token().map_or_else(SmolStr::default, |it| unquoted(it.text()).into())
     }
 }
 
-impl TypeRef {
+impl<'t> TypeRef<'t> {
     /// As written, without the blanks around: `INT`, `UDT 1`, `STRING [10]`, `"valve"`.
-    pub fn text(&self) -> String {
-        self.0.text().slice(self.range() - self.0.text_range().start()).to_string()
+    pub fn text(self) -> String {
+        self.0.text().into_owned()
     }
 
     /// The name of the type, its number and length apart.
-    pub fn token(&self) -> Option<SyntaxToken> {
-        first_token(&self.0)
+    pub fn token(self) -> Option<SyntaxToken<'t>> {
+        self.significant().next()
     }
 
     /// `10` of `STRING [10]`.
-    pub fn length(&self) -> Option<SyntaxToken> {
-        tokens(&self.0)
+    pub fn length(self) -> Option<SyntaxToken<'t>> {
+        self.significant()
             .skip_while(|it| it.kind() != SyntaxKind::LBrack)
             .nth(1)
             .filter(|it| it.kind() != SyntaxKind::RBrack)
     }
 }
 
-impl StructType {
-    pub fn decls(&self) -> impl Iterator<Item = VarDecl> + use<> {
-        support::children(&self.0)
+impl<'t> StructType<'t> {
+    pub fn decls(self) -> impl Iterator<Item = VarDecl<'t>> + use<'t> {
+        self.children()
     }
 }
 
-impl ArrayType {
+impl<'t> ArrayType<'t> {
     /// Lower and upper bound of each dimension, as written.
-    pub fn bounds(&self) -> Vec<(String, String)> {
+    pub fn bounds(self) -> Vec<(String, String)> {
         let mut bounds = Vec::new();
         let (mut low, mut current) = (None, String::new());
-        for token in tokens(&self.0).skip_while(|it| it.kind() != SyntaxKind::LBrack).skip(1) {
+        for token in self.significant().skip_while(|it| it.kind() != SyntaxKind::LBrack).skip(1) {
             match token.kind() {
                 SyntaxKind::DotDot => low = Some(std::mem::take(&mut current)),
                 kind @ (SyntaxKind::Comma | SyntaxKind::RBrack) => {
@@ -293,58 +244,58 @@ impl ArrayType {
         bounds
     }
 
-    pub fn type_ref(&self) -> Option<TypeRef> {
-        support::child(&self.0)
+    pub fn type_ref(self) -> Option<TypeRef<'t>> {
+        self.child()
     }
 
-    pub fn struct_type(&self) -> Option<StructType> {
-        support::child(&self.0)
+    pub fn struct_type(self) -> Option<StructType<'t>> {
+        self.child()
     }
 
-    pub fn array_type(&self) -> Option<ArrayType> {
-        support::child(&self.0)
+    pub fn array_type(self) -> Option<ArrayType<'t>> {
+        self.child()
     }
 }
 
-impl InitValue {
+impl<'t> InitValue<'t> {
     /// The tokens after the `:=`: constants, signs, commas and the parentheses of repetitions.
-    pub fn tokens(&self) -> impl Iterator<Item = SyntaxToken> {
-        tokens(&self.0).skip(1)
+    pub fn tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
+        self.significant().skip(1)
     }
 }
 
-impl DataInit {
-    pub fn target(&self) -> Option<Operand> {
-        support::child(&self.0)
+impl<'t> DataInit<'t> {
+    pub fn target(self) -> Option<Operand<'t>> {
+        self.child()
     }
 
-    pub fn value(&self) -> Option<InitValue> {
-        support::child(&self.0)
+    pub fn value(self) -> Option<InitValue<'t>> {
+        self.child()
     }
 }
 
-impl Network {
-    pub fn header(&self) -> Option<NetworkHeader> {
-        support::child(&self.0)
+impl<'t> Network<'t> {
+    pub fn header(self) -> Option<NetworkHeader<'t>> {
+        self.child()
     }
 
-    pub fn title(&self) -> Option<TitleLine> {
-        support::child(self.header()?.syntax())
+    pub fn title(self) -> Option<TitleLine<'t>> {
+        self.header()?.child()
     }
 
-    pub fn instrs(&self) -> impl Iterator<Item = Instr> + use<> {
-        support::children(&self.0)
+    pub fn instrs(self) -> impl Iterator<Item = Instr<'t>> + use<'t> {
+        self.children()
     }
 
     /// Whether the author left code out of this network (`...`).
-    pub fn is_elided(&self) -> bool {
-        token(&self.0, SyntaxKind::Elision).is_some()
+    pub fn is_elided(self) -> bool {
+        self.child_token(SyntaxKind::Elision).is_some()
     }
 }
 
-impl NetworkHeader {
-    pub fn title(&self) -> Option<TitleLine> {
-        support::child(&self.0)
+impl<'t> NetworkHeader<'t> {
+    pub fn title(self) -> Option<TitleLine<'t>> {
+        self.child()
     }
 }
 
@@ -356,20 +307,20 @@ pub struct Mnemonic {
     pub range: TextRange,
 }
 
-impl Instr {
-    pub fn label(&self) -> Option<Label> {
-        support::child(&self.0)
+impl<'t> Instr<'t> {
+    pub fn label(self) -> Option<Label<'t>> {
+        self.child()
     }
 
     /// The tokens of the mnemonic. Empty for a label alone on its line.
-    pub fn mnemonic_tokens(&self) -> impl Iterator<Item = SyntaxToken> {
-        tokens(&self.0).take_while(|it| {
+    pub fn mnemonic_tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
+        self.significant().take_while(|it| {
             matches!(it.kind(), SyntaxKind::Ident | SyntaxKind::Operator | SyntaxKind::LParen | SyntaxKind::RParen)
         })
     }
 
     /// `None` for a label alone on its line.
-    pub fn mnemonic(&self) -> Option<Mnemonic> {
+    pub fn mnemonic(self) -> Option<Mnemonic> {
         let mut found = self.mnemonic_tokens();
         let first = found.next()?;
         let mut range = first.text_range();
@@ -383,7 +334,7 @@ impl Instr {
     }
 
     /// `None` for a label alone and for an unknown mnemonic.
-    pub fn op(&self, mnemonics: Mnemonics) -> Option<Op> {
+    pub fn op(self, mnemonics: Mnemonics) -> Option<Op> {
         let mut found = self.mnemonic_tokens();
         let first = found.next()?;
         // Nearly always the mnemonic is one word.
@@ -393,67 +344,66 @@ impl Instr {
         }
     }
 
-    pub fn operand(&self) -> Option<Operand> {
-        support::child(&self.0)
+    pub fn operand(self) -> Option<Operand<'t>> {
+        self.child()
     }
 
     /// One operand; for a `CALL` with an instance data block two.
-    pub fn operands(&self) -> impl Iterator<Item = Operand> + use<> {
-        support::children(&self.0)
+    pub fn operands(self) -> impl Iterator<Item = Operand<'t>> + use<'t> {
+        self.children()
     }
 
-    pub fn arg_list(&self) -> Option<ArgList> {
-        support::child(&self.0)
+    pub fn arg_list(self) -> Option<ArgList<'t>> {
+        self.child()
     }
 
     /// The parameters of a `CALL`.
-    pub fn args(&self) -> impl Iterator<Item = Arg> + use<> {
+    pub fn args(self) -> impl Iterator<Item = Arg<'t>> + use<'t> {
         self.arg_list().into_iter().flat_map(|it| it.args())
     }
 }
 
-impl Label {
-    pub fn name(&self) -> Option<SyntaxToken> {
-        token(&self.0, SyntaxKind::Ident)
+impl<'t> Label<'t> {
+    pub fn name(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
     }
 }
 
-impl Operand {
+impl<'t> Operand<'t> {
     /// All tokens of the operand in order, those of its indices included, without blanks.
-    pub fn tokens(&self) -> impl Iterator<Item = SyntaxToken> {
-        let tokens = self.0.descendants_with_tokens().filter_map(rowan::NodeOrToken::into_token);
-        tokens.filter(|it| !it.kind().is_trivia())
+    pub fn tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
+        self.0.descendant_tokens().filter(|it| !it.kind().is_trivia())
     }
 
     /// As written, without the blanks around.
-    pub fn text(&self) -> String {
-        self.0.text().slice(self.range() - self.0.text_range().start()).to_string()
+    pub fn text(self) -> String {
+        self.0.text().into_owned()
     }
 
     /// The operands in brackets, of all dimensions.
-    pub fn indices(&self) -> impl Iterator<Item = Operand> + use<> {
-        support::children(&self.0)
+    pub fn indices(self) -> impl Iterator<Item = Operand<'t>> + use<'t> {
+        self.children()
     }
 
     /// The first token: what tells a constant from an address, a symbol or a local name.
-    pub fn first_token(&self) -> Option<SyntaxToken> {
-        first_token(&self.0)
+    pub fn first_token(self) -> Option<SyntaxToken<'t>> {
+        self.significant().next()
     }
 }
 
-impl ArgList {
-    pub fn args(&self) -> impl Iterator<Item = Arg> + use<> {
-        support::children(&self.0)
+impl<'t> ArgList<'t> {
+    pub fn args(self) -> impl Iterator<Item = Arg<'t>> + use<'t> {
+        self.children()
     }
 }
 
-impl Arg {
-    pub fn name(&self) -> Option<SyntaxToken> {
-        first_token(&self.0)
+impl<'t> Arg<'t> {
+    pub fn name(self) -> Option<SyntaxToken<'t>> {
+        self.significant().next()
     }
 
     /// `None` for a parameter that is left open.
-    pub fn value(&self) -> Option<Operand> {
-        support::child(&self.0)
+    pub fn value(self) -> Option<Operand<'t>> {
+        self.child()
     }
 }

@@ -1,65 +1,12 @@
 //! Typed views of a PL7 tree. Every accessor returns `None` where the text lacks the part.
 
-use rowan::ast::{AstChildren, AstNode, support};
 use smol_str::SmolStr;
 
 use super::functions::{self, Function};
 use super::instructions::IlOp;
 use super::word::{self, Keyword};
-use crate::syntax::{Plc, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
-
-macro_rules! nodes {
-    ($($(#[$meta:meta])* $name:ident),* $(,)?) => { $(
-        $(#[$meta])*
-        #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-        pub struct $name {
-            syntax: SyntaxNode,
-        }
-
-        impl AstNode for $name {
-            type Language = Plc;
-
-            fn can_cast(kind: SyntaxKind) -> bool {
-                kind == SyntaxKind::$name
-            }
-
-            fn cast(syntax: SyntaxNode) -> Option<Self> {
-                Self::can_cast(syntax.kind()).then_some(Self { syntax })
-            }
-
-            fn syntax(&self) -> &SyntaxNode {
-                &self.syntax
-            }
-        }
-    )* };
-}
-
-macro_rules! choices {
-    ($($(#[$meta:meta])* $name:ident { $($variant:ident($node:ident)),* $(,)? })*) => { $(
-        $(#[$meta])*
-        #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-        pub enum $name { $($variant($node)),* }
-
-        impl AstNode for $name {
-            type Language = Plc;
-
-            fn can_cast(kind: SyntaxKind) -> bool {
-                $($node::can_cast(kind))||*
-            }
-
-            fn cast(syntax: SyntaxNode) -> Option<Self> {
-                $(if $node::can_cast(syntax.kind()) {
-                    return $node::cast(syntax).map(Self::$variant);
-                })*
-                None
-            }
-
-            fn syntax(&self) -> &SyntaxNode {
-                match self { $(Self::$variant(it) => it.syntax()),* }
-            }
-        }
-    )* };
-}
+use crate::syntax::node::{choices, nodes};
+use crate::syntax::{AstChildren, AstNode as _, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
 nodes! {
     /// A whole unit.
@@ -168,7 +115,7 @@ impl BinOp {
         matches!(self, Self::Or | Self::Xor | Self::And)
     }
 
-    fn of(token: &SyntaxToken) -> Option<Self> {
+    fn of(token: SyntaxToken<'_>) -> Option<Self> {
         Some(match token.kind() {
             SyntaxKind::Assign => Self::Assign,
             SyntaxKind::Eq => Self::Eq,
@@ -206,7 +153,7 @@ pub enum UnaryOp {
 }
 
 impl UnaryOp {
-    fn of(token: &SyntaxToken) -> Option<Self> {
+    fn of(token: SyntaxToken<'_>) -> Option<Self> {
         Some(match token.kind() {
             SyntaxKind::Minus => Self::Minus,
             SyntaxKind::Plus => Self::Plus,
@@ -221,60 +168,48 @@ impl UnaryOp {
     }
 }
 
-fn tokens(syntax: &SyntaxNode) -> impl Iterator<Item = SyntaxToken> + use<> {
-    syntax.children_with_tokens().filter_map(SyntaxElement::into_token)
-}
-
-fn token(syntax: &SyntaxNode, kind: SyntaxKind) -> Option<SyntaxToken> {
-    support::token(syntax, kind)
-}
-
-fn nth_expr(syntax: &SyntaxNode, n: usize) -> Option<Expr> {
-    support::children(syntax).nth(n)
-}
-
-impl Root {
-    pub fn sentences(&self) -> AstChildren<Sentence> {
-        support::children(&self.syntax)
+impl<'t> Root<'t> {
+    pub fn sentences(self) -> AstChildren<'t, Sentence<'t>> {
+        self.children()
     }
 
-    pub fn headings(&self) -> AstChildren<Heading> {
-        support::children(&self.syntax)
+    pub fn headings(self) -> AstChildren<'t, Heading<'t>> {
+        self.children()
     }
 }
 
-impl Sentence {
+impl<'t> Sentence<'t> {
     /// `(*PHRASE*)` or, in the pasted form, `!`.
-    pub fn marker(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).find(|it| matches!(it.kind(), SyntaxKind::SentenceStart | SyntaxKind::Bang))
+    pub fn marker(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| matches!(it.kind(), SyntaxKind::SentenceStart | SyntaxKind::Bang))
     }
 
     /// The first label; a sentence with a misplaced one has more.
-    pub fn label(&self) -> Option<LabelDef> {
-        support::child(&self.syntax)
+    pub fn label(self) -> Option<LabelDef<'t>> {
+        self.child()
     }
 
-    pub fn labels(&self) -> AstChildren<LabelDef> {
-        support::children(&self.syntax)
+    pub fn labels(self) -> AstChildren<'t, LabelDef<'t>> {
+        self.children()
     }
 
-    pub fn instructions(&self) -> AstChildren<IlInstr> {
-        support::children(&self.syntax)
+    pub fn instructions(self) -> AstChildren<'t, IlInstr<'t>> {
+        self.children()
     }
 
     /// The statements of the outermost level.
-    pub fn statements(&self) -> AstChildren<Stmt> {
-        support::children(&self.syntax)
+    pub fn statements(self) -> AstChildren<'t, Stmt<'t>> {
+        self.children()
     }
 }
 
-impl LabelDef {
+impl<'t> LabelDef<'t> {
     /// `%L20`.
-    pub fn token(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::LabelAddress)
+    pub fn token(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::LabelAddress)
     }
 
-    pub fn number(&self) -> Option<u32> {
+    pub fn number(self) -> Option<u32> {
         label_number(self.token()?.text())
     }
 }
@@ -286,44 +221,44 @@ pub fn label_number(text: &str) -> Option<u32> {
 }
 
 /// What an instruction works on.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub enum IlOperand {
-    Object(ObjectRef),
-    Name(NameRef),
-    Literal(Literal),
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum IlOperand<'t> {
+    Object(ObjectRef<'t>),
+    Name(NameRef<'t>),
+    Literal(Literal<'t>),
     /// `%L20`.
-    Label(SyntaxToken),
-    Bracket(Bracket),
+    Label(SyntaxToken<'t>),
+    Bracket(Bracket<'t>),
 }
 
-impl IlInstr {
+impl<'t> IlInstr<'t> {
     /// The mnemonic; `None` for `)` and for a bracket alone.
-    pub fn mnemonic(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).find(|it| !it.kind().is_trivia()).filter(|it| it.kind() == SyntaxKind::Ident)
+    pub fn mnemonic(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| !it.kind().is_trivia()).filter(|it| it.kind() == SyntaxKind::Ident)
     }
 
-    pub fn op(&self) -> Option<IlOp> {
+    pub fn op(self) -> Option<IlOp> {
         IlOp::of_word(self.mnemonic()?.text())
     }
 
     /// `(` of `AND(` and `OR(`.
-    pub fn open_parenthesis(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::LParen)
+    pub fn open_parenthesis(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::LParen)
     }
 
     /// `N`, `R` or `F` behind the parenthesis.
-    pub fn modifier(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).skip_while(|it| it.kind() != SyntaxKind::LParen).find(|it| it.kind() == SyntaxKind::Ident)
+    pub fn modifier(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().skip_while(|it| it.kind() != SyntaxKind::LParen).find(|it| it.kind() == SyntaxKind::Ident)
     }
 
     /// `)`, which is an instruction of its own.
-    pub fn close_parenthesis(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::RParen)
+    pub fn close_parenthesis(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::RParen)
     }
 
-    pub fn operand(&self) -> Option<IlOperand> {
+    pub fn operand(self) -> Option<IlOperand<'t>> {
         let is_bare = self.mnemonic().is_none();
-        self.syntax.children_with_tokens().find_map(|it| match it {
+        self.0.children_with_tokens().find_map(|it| match it {
             SyntaxElement::Node(node) => match node.kind() {
                 SyntaxKind::ObjectRef => ObjectRef::cast(node).map(IlOperand::Object),
                 SyntaxKind::NameRef => NameRef::cast(node).map(IlOperand::Name),
@@ -336,17 +271,17 @@ impl IlInstr {
     }
 
     /// The bracket, whether it is the operand of a test or an action of its own.
-    pub fn bracket(&self) -> Option<Bracket> {
-        support::child(&self.syntax)
+    pub fn bracket(self) -> Option<Bracket<'t>> {
+        self.child()
     }
 
     /// Whether the instruction is a numeric operation: `[%MW10:=%MW0+100]`.
-    pub fn is_operation(&self) -> bool {
+    pub fn is_operation(self) -> bool {
         self.mnemonic().is_none() && self.bracket().is_some()
     }
 
     /// Number of the subroutine that `SR5`, `%SR5` or `SR 5` calls.
-    pub fn subroutine(&self) -> Option<u32> {
+    pub fn subroutine(self) -> Option<u32> {
         let mnemonic = self.mnemonic()?;
         word::subroutine(mnemonic.text()).or_else(|| match self.operand()? {
             IlOperand::Literal(it) if self.op() == Some(IlOp::Sr) => it.token()?.text().parse().ok(),
@@ -355,38 +290,38 @@ impl IlInstr {
     }
 }
 
-impl Bracket {
-    pub fn content(&self) -> Option<BracketContent> {
-        support::child(&self.syntax)
+impl<'t> Bracket<'t> {
+    pub fn content(self) -> Option<BracketContent<'t>> {
+        self.child()
     }
 
     /// The comparison of a test.
-    pub fn expr(&self) -> Option<Expr> {
-        support::child(&self.syntax)
+    pub fn expr(self) -> Option<Expr<'t>> {
+        self.child()
     }
 }
 
-impl StmtList {
-    pub fn statements(&self) -> AstChildren<Stmt> {
-        support::children(&self.syntax)
+impl<'t> StmtList<'t> {
+    pub fn statements(self) -> AstChildren<'t, Stmt<'t>> {
+        self.children()
     }
 }
 
-impl AssignStmt {
-    pub fn target(&self) -> Option<Expr> {
-        self.syntax
+impl<'t> AssignStmt<'t> {
+    pub fn target(self) -> Option<Expr<'t>> {
+        self.0
             .children_with_tokens()
             .take_while(|it| !matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
             .find_map(|it| Expr::cast(it.into_node()?))
     }
 
     /// `:=`, or the `=` that stands in its place.
-    pub fn operator(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).find(|it| matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
+    pub fn operator(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
     }
 
-    pub fn value(&self) -> Option<Expr> {
-        self.syntax
+    pub fn value(self) -> Option<Expr<'t>> {
+        self.0
             .children_with_tokens()
             .skip_while(|it| !matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
             .find_map(|it| Expr::cast(it.into_node()?))
@@ -394,7 +329,7 @@ impl AssignStmt {
 }
 
 /// Arguments in order, one entry a position; `None` where a position is empty.
-fn arguments(syntax: &SyntaxNode) -> Vec<Option<Expr>> {
+fn arguments<'t>(syntax: SyntaxNode<'t>) -> Vec<Option<Expr<'t>>> {
     let mut list = Vec::new();
     let mut current = None;
     let mut is_open = false;
@@ -412,36 +347,36 @@ fn arguments(syntax: &SyntaxNode) -> Vec<Option<Expr>> {
     list
 }
 
-impl CallStmt {
+impl<'t> CallStmt<'t> {
     /// `SET`, `SR5`, `MASKEVT`, the name of a DFB instance.
-    pub fn callee(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::Ident)
+    pub fn callee(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
     }
 
     /// The function or operator that is called, if it is one of the language.
-    pub fn function(&self) -> Option<&'static Function> {
+    pub fn function(self) -> Option<&'static Function> {
         functions::lookup(self.callee()?.text())
     }
 
     /// Operand of `SET %M0`; `None` for a call with parentheses.
-    pub fn operand(&self) -> Option<Expr> {
-        self.syntax
+    pub fn operand(self) -> Option<Expr<'t>> {
+        self.0
             .children_with_tokens()
             .take_while(|it| it.kind() != SyntaxKind::LParen)
             .find_map(|it| Expr::cast(it.into_node()?))
     }
 
-    pub fn has_parentheses(&self) -> bool {
-        token(&self.syntax, SyntaxKind::LParen).is_some()
+    pub fn has_parentheses(self) -> bool {
+        self.child_token(SyntaxKind::LParen).is_some()
     }
 
     /// Arguments between the parentheses, one entry a position; `None` where a position is empty.
-    pub fn arguments(&self) -> Vec<Option<Expr>> {
-        arguments(&self.syntax)
+    pub fn arguments(self) -> Vec<Option<Expr<'t>>> {
+        arguments(self.0)
     }
 
     /// Number of the subroutine that `SR5;`, `%SR5;` or `SR 5;` calls.
-    pub fn subroutine(&self) -> Option<u32> {
+    pub fn subroutine(self) -> Option<u32> {
         let callee = self.callee()?;
         word::subroutine(callee.text()).or_else(|| match self.operand()? {
             Expr::Literal(it) if callee.text().eq_ignore_ascii_case("SR") => it.token()?.text().parse().ok(),
@@ -450,173 +385,177 @@ impl CallStmt {
     }
 }
 
-impl IfStmt {
+impl<'t> IfStmt<'t> {
     /// The `IF` arm and every `ELSIF` arm, in order.
-    pub fn arms(&self) -> AstChildren<IfArm> {
-        support::children(&self.syntax)
+    pub fn arms(self) -> AstChildren<'t, IfArm<'t>> {
+        self.children()
     }
 
-    pub fn else_arm(&self) -> Option<ElseArm> {
-        support::child(&self.syntax)
+    pub fn else_arm(self) -> Option<ElseArm<'t>> {
+        self.child()
     }
 }
 
-impl IfArm {
+impl<'t> IfArm<'t> {
     /// `IF`, `ELSIF` or `ELSEIF`.
-    pub fn keyword(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::Ident)
+    pub fn keyword(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
     }
 
-    pub fn condition(&self) -> Option<Expr> {
-        support::child(&self.syntax)
+    pub fn condition(self) -> Option<Expr<'t>> {
+        self.child()
     }
 
-    pub fn body(&self) -> Option<StmtList> {
-        support::child(&self.syntax)
-    }
-}
-
-impl ElseArm {
-    pub fn body(&self) -> Option<StmtList> {
-        support::child(&self.syntax)
+    pub fn body(self) -> Option<StmtList<'t>> {
+        self.child()
     }
 }
 
-impl WhileStmt {
-    pub fn condition(&self) -> Option<Expr> {
-        support::child(&self.syntax)
-    }
-
-    pub fn body(&self) -> Option<StmtList> {
-        support::child(&self.syntax)
+impl<'t> ElseArm<'t> {
+    pub fn body(self) -> Option<StmtList<'t>> {
+        self.child()
     }
 }
 
-impl RepeatStmt {
-    pub fn body(&self) -> Option<StmtList> {
-        support::child(&self.syntax)
+impl<'t> WhileStmt<'t> {
+    pub fn condition(self) -> Option<Expr<'t>> {
+        self.child()
+    }
+
+    pub fn body(self) -> Option<StmtList<'t>> {
+        self.child()
+    }
+}
+
+impl<'t> RepeatStmt<'t> {
+    pub fn body(self) -> Option<StmtList<'t>> {
+        self.child()
     }
 
     /// The condition behind `UNTIL`, which ends the loop.
-    pub fn condition(&self) -> Option<Expr> {
-        support::child(&self.syntax)
+    pub fn condition(self) -> Option<Expr<'t>> {
+        self.child()
     }
 }
 
-impl ForStmt {
-    fn part(&self, after: impl Fn(&SyntaxElement) -> bool, before: impl Fn(&SyntaxElement) -> bool) -> Option<Expr> {
-        self.syntax
+impl<'t> ForStmt<'t> {
+    fn part(
+        self,
+        after: impl Fn(SyntaxElement<'t>) -> bool,
+        before: impl Fn(SyntaxElement<'t>) -> bool,
+    ) -> Option<Expr<'t>> {
+        self.0
             .children_with_tokens()
-            .skip_while(|it| !after(it))
+            .skip_while(|it| !after(*it))
             .skip(1)
-            .take_while(|it| !before(it))
+            .take_while(|it| !before(*it))
             .find_map(|it| Expr::cast(it.into_node()?))
     }
 
-    pub fn index(&self) -> Option<Expr> {
+    pub fn index(self) -> Option<Expr<'t>> {
         self.part(|it| is_word(it, Keyword::For), is_assignment)
     }
 
     /// `:=`, or the `=` that stands in its place.
-    pub fn operator(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).find(|it| matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
+    pub fn operator(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
     }
 
-    pub fn start(&self) -> Option<Expr> {
+    pub fn start(self) -> Option<Expr<'t>> {
         self.part(is_assignment, |it| is_word(it, Keyword::To))
     }
 
-    pub fn end(&self) -> Option<Expr> {
+    pub fn end(self) -> Option<Expr<'t>> {
         self.part(|it| is_word(it, Keyword::To), |it| is_word(it, Keyword::Do))
     }
 
-    pub fn body(&self) -> Option<StmtList> {
-        support::child(&self.syntax)
+    pub fn body(self) -> Option<StmtList<'t>> {
+        self.child()
     }
 }
 
-fn is_word(element: &SyntaxElement, keyword: Keyword) -> bool {
-    element.as_token().is_some_and(|it| it.kind() == SyntaxKind::Ident && Keyword::of(it.text()) == Some(keyword))
+fn is_word(element: SyntaxElement<'_>, keyword: Keyword) -> bool {
+    element.into_token().is_some_and(|it| it.kind() == SyntaxKind::Ident && Keyword::of(it.text()) == Some(keyword))
 }
 
-fn is_assignment(element: &SyntaxElement) -> bool {
+fn is_assignment(element: SyntaxElement<'_>) -> bool {
     matches!(element.kind(), SyntaxKind::Assign | SyntaxKind::Eq)
 }
 
-impl JumpStmt {
+impl<'t> JumpStmt<'t> {
     /// `%L20`.
-    pub fn label(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::LabelAddress)
+    pub fn label(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::LabelAddress)
     }
 
     /// The word that stands in place of a label: `L20`.
-    pub fn name(&self) -> Option<NameRef> {
-        support::child(&self.syntax)
+    pub fn name(self) -> Option<NameRef<'t>> {
+        self.child()
     }
 }
 
-impl ExprStmt {
-    pub fn expr(&self) -> Option<Expr> {
-        support::child(&self.syntax)
+impl<'t> ExprStmt<'t> {
+    pub fn expr(self) -> Option<Expr<'t>> {
+        self.child()
     }
 }
 
-impl BinExpr {
-    pub fn lhs(&self) -> Option<Expr> {
-        nth_expr(&self.syntax, 0)
+impl<'t> BinExpr<'t> {
+    pub fn lhs(self) -> Option<Expr<'t>> {
+        self.children().nth(0)
     }
 
-    pub fn operator(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).find(|it| BinOp::of(it).is_some())
+    pub fn operator(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| BinOp::of(*it).is_some())
     }
 
-    pub fn op(&self) -> Option<BinOp> {
-        BinOp::of(&self.operator()?)
+    pub fn op(self) -> Option<BinOp> {
+        BinOp::of(self.operator()?)
     }
 
-    pub fn rhs(&self) -> Option<Expr> {
-        nth_expr(&self.syntax, 1)
-    }
-}
-
-impl UnaryExpr {
-    pub fn operator(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).find(|it| UnaryOp::of(it).is_some())
-    }
-
-    pub fn op(&self) -> Option<UnaryOp> {
-        UnaryOp::of(&self.operator()?)
-    }
-
-    pub fn operand(&self) -> Option<Expr> {
-        support::child(&self.syntax)
+    pub fn rhs(self) -> Option<Expr<'t>> {
+        self.children().nth(1)
     }
 }
 
-impl ParenExpr {
-    pub fn expr(&self) -> Option<Expr> {
-        support::child(&self.syntax)
+impl<'t> UnaryExpr<'t> {
+    pub fn operator(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| UnaryOp::of(*it).is_some())
+    }
+
+    pub fn op(self) -> Option<UnaryOp> {
+        UnaryOp::of(self.operator()?)
+    }
+
+    pub fn operand(self) -> Option<Expr<'t>> {
+        self.child()
+    }
+}
+
+impl<'t> ParenExpr<'t> {
+    pub fn expr(self) -> Option<Expr<'t>> {
+        self.child()
     }
 
     /// `[%MW10<20]` rather than `(%MW10<20)`.
-    pub fn is_square(&self) -> bool {
-        token(&self.syntax, SyntaxKind::LBrack).is_some()
+    pub fn is_square(self) -> bool {
+        self.child_token(SyntaxKind::LBrack).is_some()
     }
 }
 
-impl CallExpr {
-    pub fn name(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::Ident)
+impl<'t> CallExpr<'t> {
+    pub fn name(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
     }
 
     /// The function that is called, if it is one of the language.
-    pub fn function(&self) -> Option<&'static Function> {
+    pub fn function(self) -> Option<&'static Function> {
         functions::lookup(self.name()?.text())
     }
 
     /// Arguments, one entry a position; `None` where a position is empty.
-    pub fn arguments(&self) -> Vec<Option<Expr>> {
-        arguments(&self.syntax)
+    pub fn arguments(self) -> Vec<Option<Expr<'t>>> {
+        arguments(self.0)
     }
 }
 
@@ -633,13 +572,13 @@ pub enum LiteralValue {
     Other(SmolStr),
 }
 
-impl Literal {
-    pub fn token(&self) -> Option<SyntaxToken> {
-        tokens(&self.syntax).find(|it| !it.kind().is_trivia())
+impl<'t> Literal<'t> {
+    pub fn token(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| !it.kind().is_trivia())
     }
 
     /// `None` for a number that no 64 bits hold, for a digit that its base does not have, and for an elision.
-    pub fn value(&self) -> Option<LiteralValue> {
+    pub fn value(self) -> Option<LiteralValue> {
         let token = self.token()?;
         let text = token.text();
         Some(match token.kind() {
@@ -671,71 +610,72 @@ fn integer(digits: &str, base: u32) -> Option<u64> {
     Some(value)
 }
 
-impl ObjectRef {
+impl<'t> ObjectRef<'t> {
     /// The address without blanks, index and the suffix behind the index: `%MW10:X4`, `%MW100` of `%MW100[%MW99]`.
-    pub fn address(&self) -> SmolStr {
+    pub fn address(self) -> SmolStr {
         joined(self.pieces())
     }
 
     /// The tokens of the address, more than one if blanks part it: `%C8 .D`.
-    pub fn pieces(&self) -> impl Iterator<Item = SyntaxToken> + use<> {
-        let is_before_index = |it: &SyntaxElement| it.kind() != SyntaxKind::Index;
-        self.syntax
+    pub fn pieces(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
+        let is_before_index = |it: &SyntaxElement<'_>| it.kind() != SyntaxKind::Index;
+        self.0
             .children_with_tokens()
             .take_while(is_before_index)
             .filter_map(SyntaxElement::into_token)
             .filter(|it| !it.kind().is_trivia())
     }
 
-    pub fn index(&self) -> Option<Index> {
-        support::child(&self.syntax)
+    pub fn index(self) -> Option<Index<'t>> {
+        self.child()
     }
 
     /// What stands behind the index, without blanks: `:10`, `:X4`, `.T`.
-    pub fn suffix(&self) -> Option<SmolStr> {
-        suffix_after_index(&self.syntax)
+    pub fn suffix(self) -> Option<SmolStr> {
+        suffix_after_index(self.0)
     }
 }
 
-impl NameRef {
+impl<'t> NameRef<'t> {
     /// The symbol, or the DFB instance.
-    pub fn name(&self) -> Option<SyntaxToken> {
-        token(&self.syntax, SyntaxKind::Ident)
+    pub fn name(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
     }
 
     /// The items behind the dots: `Ecart` of `Controle.Ecart`.
-    pub fn items(&self) -> impl Iterator<Item = SyntaxToken> + use<> {
-        tokens(&self.syntax)
+    pub fn items(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
+        self.0
+            .tokens()
             .skip_while(|it| it.kind() != SyntaxKind::Dot)
             .filter(|it| matches!(it.kind(), SyntaxKind::Ident | SyntaxKind::Number))
     }
 
     /// The name with its items and the suffix before an index, without blanks: `Controle.Ecart`, `Etat_pompe:X1`.
-    pub fn path(&self) -> SmolStr {
-        let is_before_index = |it: &SyntaxElement| it.kind() != SyntaxKind::Index;
-        let pieces = self.syntax.children_with_tokens().take_while(is_before_index);
+    pub fn path(self) -> SmolStr {
+        let is_before_index = |it: &SyntaxElement<'_>| it.kind() != SyntaxKind::Index;
+        let pieces = self.0.children_with_tokens().take_while(is_before_index);
         joined(pieces.filter_map(SyntaxElement::into_token).filter(|it| !it.kind().is_trivia()))
     }
 
-    pub fn index(&self) -> Option<Index> {
-        support::child(&self.syntax)
+    pub fn index(self) -> Option<Index<'t>> {
+        self.child()
     }
 
     /// What extends the name, before or behind its index, without blanks: `:10`, `:X4`.
-    pub fn suffix(&self) -> Option<SmolStr> {
-        let text = joined(tokens(&self.syntax).filter(|it| it.kind() == SyntaxKind::ObjectSuffix));
+    pub fn suffix(self) -> Option<SmolStr> {
+        let text = joined(self.0.tokens().filter(|it| it.kind() == SyntaxKind::ObjectSuffix));
         (!text.is_empty()).then_some(text)
     }
 }
 
-fn suffix_after_index(syntax: &SyntaxNode) -> Option<SmolStr> {
+fn suffix_after_index(syntax: SyntaxNode<'_>) -> Option<SmolStr> {
     let behind = syntax.children_with_tokens().skip_while(|it| it.kind() != SyntaxKind::Index);
     let text = joined(behind.filter_map(SyntaxElement::into_token).filter(|it| it.kind() == SyntaxKind::ObjectSuffix));
     (!text.is_empty()).then_some(text)
 }
 
 /// Nearly always one piece, which then is not copied to the heap.
-fn joined(mut pieces: impl Iterator<Item = SyntaxToken>) -> SmolStr {
+fn joined<'t>(mut pieces: impl Iterator<Item = SyntaxToken<'t>>) -> SmolStr {
     let Some(first) = pieces.next() else { return SmolStr::default() };
     let Some(second) = pieces.next() else { return first.text().into() };
     let mut text = String::from(first.text());
@@ -745,8 +685,8 @@ fn joined(mut pieces: impl Iterator<Item = SyntaxToken>) -> SmolStr {
     text.into()
 }
 
-impl Index {
-    pub fn expr(&self) -> Option<Expr> {
-        support::child(&self.syntax)
+impl<'t> Index<'t> {
+    pub fn expr(self) -> Option<Expr<'t>> {
+        self.child()
     }
 }

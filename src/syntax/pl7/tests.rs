@@ -2,21 +2,21 @@
 
 use std::fmt::Write as _;
 
+use crate::syntax::AstNode;
 use proptest::prelude::*;
-use rowan::ast::AstNode as _;
 
 use super::ast::{BinOp, BracketContent, Expr, IlOperand, LiteralValue, Root, Sentence, Stmt, UnaryOp};
 use super::instructions::IlOp;
 use super::*;
 use crate::syntax::{Parse, SyntaxElement, SyntaxKind, SyntaxNode};
 
-fn write(node: &SyntaxNode, out: &mut String) {
+fn write(node: SyntaxNode<'_>, out: &mut String) {
     write!(out, "({:?}", node.kind()).unwrap();
     for child in node.children_with_tokens() {
         match child {
             SyntaxElement::Node(it) => {
                 out.push(' ');
-                write(&it, out);
+                write(it, out);
             }
             SyntaxElement::Token(it) if it.kind().is_trivia() => {}
             SyntaxElement::Token(it) => write!(out, " {}", it.text()).unwrap(),
@@ -29,7 +29,7 @@ fn shape(parse: &Parse) -> String {
     let mut out = String::new();
     for child in parse.syntax().children_with_tokens() {
         match child {
-            SyntaxElement::Node(it) => write(&it, &mut out),
+            SyntaxElement::Node(it) => write(it, &mut out),
             SyntaxElement::Token(it) if it.kind().is_trivia() => continue,
             SyntaxElement::Token(it) => out.push_str(it.text()),
         }
@@ -40,7 +40,7 @@ fn shape(parse: &Parse) -> String {
 
 /// Errors as `text it points at: message`.
 fn errors(parse: &Parse) -> Vec<String> {
-    let text = parse.syntax().text().to_string();
+    let text = parse.syntax().text().into_owned();
     parse.errors().iter().map(|it| format!("{}: {}", &text[it.range], it.message)).collect()
 }
 
@@ -67,31 +67,36 @@ fn inner(shape: &str) -> String {
     shape.strip_prefix("(Sentence ").and_then(|it| it.strip_suffix(')')).expect("one sentence").to_owned()
 }
 
-fn sentence(parse: &Parse) -> Sentence {
+fn sentence(parse: &Parse) -> Sentence<'_> {
     Root::cast(parse.syntax()).and_then(|it| it.sentences().next()).expect("a sentence")
 }
 
-fn statement(text: &str) -> Stmt {
-    sentence(&legal(parse_st(text))).statements().next().expect("a statement")
+/// Trees of tests live as long as the tests.
+fn keep(parse: Parse) -> &'static Parse {
+    Box::leak(Box::new(parse))
 }
 
-fn expr(text: &str) -> Expr {
+fn statement(text: &str) -> Stmt<'static> {
+    sentence(keep(legal(parse_st(text)))).statements().next().expect("a statement")
+}
+
+fn expr(text: &str) -> Expr<'static> {
     match statement(&format!("%M0:={text};")) {
         Stmt::Assign(it) => it.value().expect("a value"),
         other => panic!("{other:?}"),
     }
 }
 
-fn text(node: &impl rowan::ast::AstNode<Language = crate::syntax::Plc>) -> String {
-    node.syntax().text().to_string()
+fn text<'t>(node: &impl AstNode<'t>) -> String {
+    node.syntax().text().into_owned()
 }
 
 /// The expression with a pair of parentheses around every operation.
 fn grouped(expr: &Expr) -> String {
     let side = |it: Option<Expr>| it.map_or("?".into(), |it| grouped(&it));
     match expr {
-        Expr::Bin(it) => format!("({} {} {})", side(it.lhs()), it.operator().unwrap(), side(it.rhs())),
-        Expr::Unary(it) => format!("({} {})", it.operator().unwrap(), side(it.operand())),
+        Expr::Bin(it) => format!("({} {} {})", side(it.lhs()), it.operator().unwrap().text(), side(it.rhs())),
+        Expr::Unary(it) => format!("({} {})", it.operator().unwrap().text(), side(it.operand())),
         Expr::Paren(it) => side(it.expr()),
         other => text(other),
     }
@@ -694,13 +699,14 @@ mod hostile {
     #[track_caller]
     fn survives(text: &str) -> [usize; 2] {
         [parse_il(text), parse_st(text)].map(|parse| {
-            assert_eq!(parse.syntax().text().len(), rowan::TextSize::of(text));
+            assert_eq!(parse.syntax().text().len(), text.len());
             let mut depth = 0_u32;
             let mut highest = 0;
-            for event in parse.syntax().preorder() {
+            for event in parse.syntax().walk() {
                 match event {
-                    rowan::WalkEvent::Enter(_) => depth += 1,
-                    rowan::WalkEvent::Leave(_) => depth -= 1,
+                    crate::syntax::WalkEvent::Enter(_) => depth += 1,
+                    crate::syntax::WalkEvent::Leave(_) => depth -= 1,
+                    crate::syntax::WalkEvent::Token(_) => {}
                 }
                 highest = highest.max(depth);
             }
@@ -726,7 +732,8 @@ mod hostile {
         ] {
             let [_, errors] = survives(&text);
             assert_eq!(errors, errors_in_st, "{}", &text[..40]);
-            let last = sentence(&parse_st(&text)).statements().filter(|it| matches!(it, Stmt::Assign(_))).last();
+            let parse = parse_st(&text);
+            let last = sentence(&parse).statements().filter(|it| matches!(it, Stmt::Assign(_))).last();
             assert_eq!(last.map(|it| super::text(&it)).as_deref(), Some("%M2:=1;"), "{}", &text[..40]);
         }
         survives(&"AND(%M0 ".repeat(N));

@@ -1,0 +1,381 @@
+//! Views of a tree: a borrowed green node or token with its place.
+//!
+//! A view is two words, copied freely, and knows what is below it, not what is above: who needs the way down to a place
+//! keeps it, or asks [`SyntaxNode::path_to`]. Walking costs nothing but reading the tree, which is why the whole pipeline
+//! works on views and not on nodes that allocate and count references.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::iter::FusedIterator;
+use std::marker::PhantomData;
+
+use rowan::{GreenNodeData, GreenTokenData, NodeOrToken, TextRange, TextSize};
+
+use super::kind::SyntaxKind;
+
+/// A node and its place in the unit.
+#[derive(Clone, Copy)]
+pub struct SyntaxNode<'t> {
+    green: &'t GreenNodeData,
+    start: TextSize,
+}
+
+/// A token and its place in the unit.
+#[derive(Clone, Copy)]
+pub struct SyntaxToken<'t> {
+    green: &'t GreenTokenData,
+    start: TextSize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SyntaxElement<'t> {
+    Node(SyntaxNode<'t>),
+    Token(SyntaxToken<'t>),
+}
+
+/// Identity, not structure: tokens are shared, so the place counts too.
+impl PartialEq for SyntaxNode<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.green, other.green) && self.start == other.start
+    }
+}
+
+impl Eq for SyntaxNode<'_> {}
+
+impl Hash for SyntaxNode<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::ptr::from_ref(self.green).hash(state);
+        self.start.hash(state);
+    }
+}
+
+impl PartialEq for SyntaxToken<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.green, other.green) && self.start == other.start
+    }
+}
+
+impl Eq for SyntaxToken<'_> {}
+
+impl Hash for SyntaxToken<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::ptr::from_ref(self.green).hash(state);
+        self.start.hash(state);
+    }
+}
+
+impl<'t> SyntaxNode<'t> {
+    pub(super) fn new_root(green: &'t GreenNodeData) -> Self {
+        Self { green, start: TextSize::new(0) }
+    }
+
+    pub fn kind(self) -> SyntaxKind {
+        self.green.kind().into()
+    }
+
+    pub fn text_range(self) -> TextRange {
+        TextRange::at(self.start, self.green.text_len())
+    }
+
+    /// The text of all tokens; borrowed when there is one.
+    pub fn text(self) -> Cow<'t, str> {
+        let mut tokens = self.descendant_tokens();
+        let Some(first) = tokens.next() else { return Cow::Borrowed("") };
+        let Some(second) = tokens.next() else { return Cow::Borrowed(first.text()) };
+        let mut text = String::with_capacity(self.green.text_len().into());
+        for token in [first, second].into_iter().chain(tokens) {
+            text.push_str(token.text());
+        }
+        Cow::Owned(text)
+    }
+
+    pub fn children_with_tokens(self) -> Elements<'t> {
+        Elements { raw: self.green.children(), start: self.start }
+    }
+
+    pub fn children(self) -> impl Iterator<Item = SyntaxNode<'t>> + Clone {
+        self.children_with_tokens().filter_map(SyntaxElement::into_node)
+    }
+
+    /// The node's own tokens, blanks and comments too.
+    pub fn tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> + Clone {
+        self.children_with_tokens().filter_map(SyntaxElement::into_token)
+    }
+
+    /// Enters and leaves every node below and this one, and enters every token.
+    pub fn walk(self) -> Walk<'t> {
+        Walk { open: Vec::new(), next: Some(self) }
+    }
+
+    /// This node and every node below it, in the order of the text.
+    pub fn descendants(self) -> impl Iterator<Item = SyntaxNode<'t>> {
+        self.walk().filter_map(|it| match it {
+            WalkEvent::Enter(node) => Some(node),
+            WalkEvent::Token(_) | WalkEvent::Leave(_) => None,
+        })
+    }
+
+    /// Every token below this node, in the order of the text.
+    pub fn descendant_tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> {
+        self.walk().filter_map(|it| match it {
+            WalkEvent::Token(token) => Some(token),
+            WalkEvent::Enter(_) | WalkEvent::Leave(_) => None,
+        })
+    }
+
+    /// This node and those below it that cover a range, outermost first.
+    pub fn path_to(self, range: TextRange) -> Vec<SyntaxNode<'t>> {
+        let mut path = Vec::new();
+        let mut current = Some(self).filter(|it| it.text_range().contains_range(range));
+        while let Some(node) = current {
+            path.push(node);
+            current = node.children().find(|it| it.text_range().contains_range(range));
+        }
+        path
+    }
+}
+
+/// The tree in indented lines.
+impl fmt::Debug for SyntaxNode<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !f.alternate() {
+            return write!(f, "{:?}@{:?}", self.kind(), self.text_range());
+        }
+        let mut depth = 0_usize;
+        for event in self.walk() {
+            match event {
+                WalkEvent::Enter(node) => {
+                    writeln!(f, "{:1$}{node:?}", "", depth * 2)?;
+                    depth += 1;
+                }
+                WalkEvent::Token(token) => writeln!(f, "{:1$}{token:?}", "", depth * 2)?,
+                WalkEvent::Leave(_) => depth = depth.saturating_sub(1),
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<'t> SyntaxToken<'t> {
+    pub fn kind(self) -> SyntaxKind {
+        self.green.kind().into()
+    }
+
+    pub fn text(self) -> &'t str {
+        self.green.text()
+    }
+
+    pub fn text_range(self) -> TextRange {
+        TextRange::at(self.start, self.green.text_len())
+    }
+}
+
+impl fmt::Debug for SyntaxToken<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}@{:?} {:?}", self.kind(), self.text_range(), self.text())
+    }
+}
+
+impl<'t> SyntaxElement<'t> {
+    pub fn kind(self) -> SyntaxKind {
+        match self {
+            Self::Node(it) => it.kind(),
+            Self::Token(it) => it.kind(),
+        }
+    }
+
+    pub fn text_range(self) -> TextRange {
+        match self {
+            Self::Node(it) => it.text_range(),
+            Self::Token(it) => it.text_range(),
+        }
+    }
+
+    pub fn into_node(self) -> Option<SyntaxNode<'t>> {
+        match self {
+            Self::Node(it) => Some(it),
+            Self::Token(_) => None,
+        }
+    }
+
+    pub fn into_token(self) -> Option<SyntaxToken<'t>> {
+        match self {
+            Self::Node(_) => None,
+            Self::Token(it) => Some(it),
+        }
+    }
+}
+
+/// Children of a node with their places.
+#[derive(Debug, Clone)]
+pub struct Elements<'t> {
+    raw: rowan::Children<'t>,
+    start: TextSize,
+}
+
+impl<'t> Iterator for Elements<'t> {
+    type Item = SyntaxElement<'t>;
+
+    #[inline]
+    fn next(&mut self) -> Option<SyntaxElement<'t>> {
+        let start = self.start;
+        Some(match self.raw.next()? {
+            NodeOrToken::Node(green) => {
+                self.start += green.text_len();
+                SyntaxElement::Node(SyntaxNode { green, start })
+            }
+            NodeOrToken::Token(green) => {
+                self.start += green.text_len();
+                SyntaxElement::Token(SyntaxToken { green, start })
+            }
+        })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.raw.size_hint()
+    }
+}
+
+impl FusedIterator for Elements<'_> {}
+
+/// A step of [`SyntaxNode::walk`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WalkEvent<'t> {
+    Enter(SyntaxNode<'t>),
+    Token(SyntaxToken<'t>),
+    Leave(SyntaxNode<'t>),
+}
+
+/// See [`SyntaxNode::walk`].
+#[derive(Debug, Clone)]
+pub struct Walk<'t> {
+    open: Vec<(SyntaxNode<'t>, Elements<'t>)>,
+    next: Option<SyntaxNode<'t>>,
+}
+
+impl<'t> Iterator for Walk<'t> {
+    type Item = WalkEvent<'t>;
+
+    fn next(&mut self) -> Option<WalkEvent<'t>> {
+        if let Some(node) = self.next.take() {
+            self.open.push((node, node.children_with_tokens()));
+            return Some(WalkEvent::Enter(node));
+        }
+        let (node, children) = self.open.last_mut()?;
+        match children.next() {
+            Some(SyntaxElement::Node(child)) => {
+                self.open.push((child, child.children_with_tokens()));
+                Some(WalkEvent::Enter(child))
+            }
+            Some(SyntaxElement::Token(token)) => Some(WalkEvent::Token(token)),
+            None => {
+                let node = *node;
+                self.open.pop();
+                Some(WalkEvent::Leave(node))
+            }
+        }
+    }
+}
+
+impl FusedIterator for Walk<'_> {}
+
+/// A typed view of a node.
+pub trait AstNode<'t>: Copy {
+    fn can_cast(kind: SyntaxKind) -> bool;
+
+    fn cast(node: SyntaxNode<'t>) -> Option<Self>;
+
+    fn syntax(self) -> SyntaxNode<'t>;
+
+    /// Place of the node. Blanks and comments stand before the node whose first token they precede, so it has none at
+    /// its ends.
+    fn range(self) -> TextRange {
+        self.syntax().text_range()
+    }
+
+    /// The first child of a type.
+    fn child<N: AstNode<'t>>(self) -> Option<N> {
+        self.children().next()
+    }
+
+    fn children<N: AstNode<'t>>(self) -> AstChildren<'t, N> {
+        AstChildren { elements: self.syntax().children_with_tokens(), kind: PhantomData }
+    }
+
+    /// The first token of a kind.
+    fn child_token(self, kind: SyntaxKind) -> Option<SyntaxToken<'t>> {
+        self.syntax().tokens().find(|it| it.kind() == kind)
+    }
+
+    /// Tokens that are neither blanks nor comments.
+    fn significant(self) -> impl Iterator<Item = SyntaxToken<'t>> + Clone {
+        self.syntax().tokens().filter(|it| !it.kind().is_trivia())
+    }
+}
+
+/// Children of one type.
+#[derive(Debug, Clone)]
+pub struct AstChildren<'t, N> {
+    elements: Elements<'t>,
+    kind: PhantomData<N>,
+}
+
+impl<'t, N: AstNode<'t>> Iterator for AstChildren<'t, N> {
+    type Item = N;
+
+    fn next(&mut self) -> Option<N> {
+        self.elements.by_ref().filter_map(SyntaxElement::into_node).find_map(N::cast)
+    }
+}
+
+/// Typed views of nodes that are of one kind each.
+macro_rules! nodes {
+    ($($(#[$meta:meta])* $name:ident),* $(,)?) => {$(
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub struct $name<'t>($crate::syntax::SyntaxNode<'t>);
+
+        impl<'t> $crate::syntax::AstNode<'t> for $name<'t> {
+            fn can_cast(kind: $crate::syntax::SyntaxKind) -> bool {
+                kind == $crate::syntax::SyntaxKind::$name
+            }
+
+            fn cast(node: $crate::syntax::SyntaxNode<'t>) -> Option<Self> {
+                Self::can_cast(node.kind()).then_some(Self(node))
+            }
+
+            fn syntax(self) -> $crate::syntax::SyntaxNode<'t> {
+                self.0
+            }
+        }
+    )*};
+}
+
+/// Typed views of nodes that are of one of several types.
+macro_rules! choices {
+    ($($(#[$meta:meta])* $name:ident { $($variant:ident($node:ident)),* $(,)? })*) => {$(
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum $name<'t> { $($variant($node<'t>)),* }
+
+        impl<'t> $crate::syntax::AstNode<'t> for $name<'t> {
+            fn can_cast(kind: $crate::syntax::SyntaxKind) -> bool {
+                $($node::can_cast(kind))||*
+            }
+
+            fn cast(node: $crate::syntax::SyntaxNode<'t>) -> Option<Self> {
+                $(if $node::can_cast(node.kind()) {
+                    return $node::cast(node).map(Self::$variant);
+                })*
+                None
+            }
+
+            fn syntax(self) -> $crate::syntax::SyntaxNode<'t> {
+                match self { $(Self::$variant(it) => it.syntax()),* }
+            }
+        }
+    )*};
+}
+
+pub(crate) use {choices, nodes};
