@@ -22,7 +22,8 @@ use crate::analysis::symbols::{self, SymbolTable};
 use crate::lint::settings::{ProgramScope, Settings};
 use crate::lint::suppress::{Code, Comment, Suppressions};
 use crate::lint::{
-    Check, Diagnostic, FileCx, Finding, Location, Outcome, ProgramCx, Rule, SourceView, UnitCx, Unread, UnreadReason,
+    Check, Diagnostic, FileCx, Finding, Location, MadeOf, Outcome, ProgramCx, Rule, SourceView, UnitCx, Unread,
+    UnreadReason,
 };
 use crate::model::entity::{Entity, Family};
 use crate::model::lower;
@@ -31,6 +32,7 @@ use crate::source::detect::{self, Detected, Dialect, FileHint};
 use crate::source::entity_from_address;
 use crate::source::line_index::LineIndex;
 use crate::source::split::{self, SplitHint};
+use crate::source::stx;
 use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
 use crate::target::Target;
 
@@ -149,7 +151,7 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
-    let target = target_of(settings, family);
+    let target = target_of(db, settings, Some(unit.file(db)), family);
     let cx = UnitCx::new(&model, &tree, text, settings, &target);
     let findings = run_rules(settings, |rule, findings| match rule.check {
         Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
@@ -215,7 +217,9 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
         let Some(family) = family(file.detected(db)) else { continue };
         let entities = named_entities(db, file);
         let is_part = !entities.is_empty() || *declares_variables(db, file);
-        if scope == ProgramScope::File || !is_part || entities.contains(&Entity::Listing) {
+        // A project is a whole program, whatever exports of it lie beside it.
+        let is_project = file.detected(db) == Detected::Stx;
+        if scope == ProgramScope::File || is_project || !is_part || entities.contains(&Entity::Listing) {
             alone.push((family, file));
             continue;
         }
@@ -254,7 +258,7 @@ fn folder_of(path: &str) -> &str {
 /// The vendor family of a file that is linted.
 pub fn family(detected: Detected) -> Option<Family> {
     match detected {
-        Detected::Exchange | Detected::Pasted(_) => Some(Family::Pl7),
+        Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
         Detected::Step7 => Some(Family::Step7),
         _ => None,
     }
@@ -284,7 +288,7 @@ pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable 
 pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
     let project = db.project();
     let settings = project.settings(db);
-    let target = target_of(settings, program.family(db));
+    let target = target_of(db, settings, program.files(db).first().copied(), program.family(db));
     let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
     let facts = symbols::resolve(symbol_table(db, program), &facts);
     let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
@@ -349,10 +353,19 @@ fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec
     ran
 }
 
-/// The controller of the settings when it is one of that vendor's, else whatever holds for all of them.
-fn target_of(settings: &Settings, family: Family) -> Target {
+/// The controller of the settings when it is one of that vendor's, else the one that the file names, else whatever
+/// holds for all of them.
+fn target_of(db: &dyn Db, settings: &Settings, file: Option<SourceFile>, family: Family) -> Target {
     let configured = settings.controller().and_then(|it| it.parse().ok());
-    configured.filter(|it: &Target| it.family() == family).unwrap_or(Target::any(family))
+    let named = || *named_controller(db, file?);
+    configured.filter(|it: &Target| it.family() == family).or_else(named).unwrap_or(Target::any(family))
+}
+
+/// The controller that a project is made for.
+#[salsa::tracked]
+fn named_controller(db: &dyn Db, file: SourceFile) -> Option<Target> {
+    let name = (file.detected(db) == Detected::Stx).then(|| stx::controller(file.text(db)))??;
+    Target::of_project(name)
 }
 
 /// All findings of a file, sorted by place and code; suppressed ones are marked.
@@ -379,6 +392,9 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         if !table.is_empty() {
             found.iter_mut().for_each(|it| it.message = table.annotate(&it.message));
         }
+    }
+    if file.detected(db) == Detected::Stx {
+        found.iter_mut().for_each(|it| qualify(db, it, layout));
     }
     found.retain_mut(|it| match selection.severity(it.rule, it.severity) {
         Some(severity) => {
@@ -445,10 +461,22 @@ impl<'db> Places<'db> {
     }
 }
 
-fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
+/// Says of a finding in a project what it rests on. Nobody can change the text.
+fn qualify(db: &dyn Db, finding: &mut Finding<FilePlace>, layout: &[(Unit<'_>, u32)]) {
+    finding.fixes.clear();
+    if unit_at(layout, finding.place.range.start()).is_some_and(|it| it.language(db) == Language::Pl7Xref) {
+        let note = "known by the project's cross-reference, which tells neither order nor conditions";
+        finding.notes.push(note.to_owned());
+    }
+}
+
+fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'db>> {
     let after = layout.partition_point(|it| it.1 <= u32::from(at));
-    let unit = after.checked_sub(1).and_then(|it| layout.get(it));
-    unit.map_or_else(String::new, |it| it.0.entity(db).to_string())
+    Some(layout.get(after.checked_sub(1)?)?.0)
+}
+
+fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
+    unit_at(layout, at).map_or_else(String::new, |it| it.entity(db).to_string())
 }
 
 /// Suppression comments of a file.
@@ -621,7 +649,12 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             dialect: dialect_name(&db, file),
             entities: 0,
             not_understood: 0,
+            made_of: None,
         };
+        if file.detected(&db) == Detected::Stx {
+            let cross_reference = units(&db, file).iter().any(|it| it.language(&db) == Language::Pl7Xref);
+            view.made_of = Some(MadeOf { cross_reference });
+        }
         for &unit in units(&db, file) {
             if *unit.entity(&db) != Entity::Container {
                 view.entities += 1;
@@ -654,8 +687,8 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
 
 /// Bytes of tokens that the syntax could not place.
 fn not_understood(language: Language, parse: &Parse) -> usize {
-    // Between the programs of an exchange file, what is unknown is no mistake.
-    if parse.errors().is_empty() && language != Language::Exchange {
+    // What is unknown between the programs of an exchange file, or in a vendor's table, is no mistake.
+    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Pl7Xref) {
         return 0;
     }
     let root = parse.syntax();
@@ -667,6 +700,7 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
+        (Detected::Stx, _) => "PL7 project, by its cross-reference".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::German))) => "STEP 7 AWL, German mnemonics".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
         (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),

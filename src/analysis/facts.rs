@@ -343,12 +343,7 @@ fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
 
 /// Whether two writes of one object count as one: never both in a scan, or a constant default that a later,
 /// conditional write of the same unit overrides.
-fn same_drive(
-    model: &UnitModel,
-    given: &Given,
-    first: (u32, &Access),
-    second: (u32, &Access),
-) -> bool {
+fn same_drive(model: &UnitModel, given: &Given, first: (u32, &Access), second: (u32, &Access)) -> bool {
     let (Some(a), Some(b)) = (model.statement(first.1), model.statement(second.1)) else { return false };
     if a.path == Exprs::FALSE || b.path == Exprs::FALSE {
         return true;

@@ -7,6 +7,7 @@ use super::facts::{self, FactCall, UnitFacts, Use};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::{Callee, Mode, Section};
+use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -15,6 +16,8 @@ pub enum Context {
     Cyclic,
     Fast,
     Event(u16),
+    /// A task of a PL7 project of which only the number is known.
+    Task(u16),
     /// OB 100 to 102: once, before the first scan.
     Startup,
     /// Any other OB, by number.
@@ -332,6 +335,7 @@ fn own_context(entity: &Entity) -> Option<Context> {
         Entity::Pl7 { task: Task::Mast, .. } => Some(Context::Cyclic),
         Entity::Pl7 { task: Task::Fast, .. } => Some(Context::Fast),
         Entity::Pl7 { task: Task::Event(number), .. } => Some(Context::Event(*number)),
+        Entity::Pl7 { task: Task::Numbered(number), .. } => Some(Context::Task(*number)),
         Entity::Block { name: BlockName::Number(BlockKind::Ob, number), .. } => Some(match number {
             1 => Context::Cyclic,
             100..=102 => Context::Startup,
@@ -397,10 +401,12 @@ fn order(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
 /// Whether the units hold the program's cyclic entry point.
 fn has_main(units: &[&UnitFacts]) -> bool {
     units.iter().any(|it| {
-        matches!(
-            &it.entity,
-            Entity::Pl7 { part: Part::Main, .. } | Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. }
-        )
+        // A cross-reference is one of a whole project.
+        it.language == Language::Pl7Xref
+            || matches!(
+                &it.entity,
+                Entity::Pl7 { part: Part::Main, .. } | Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. }
+            )
     })
 }
 

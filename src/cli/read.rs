@@ -67,7 +67,9 @@ fn input(path: String, bytes: &[u8], explicit: bool, settings: &Settings, dialec
     let hint = FileHint { path: Some(Path::new(&path)), explicit, dialect };
     let (source, detected) = load(hint, bytes, settings.encoding());
     let reason = match detected {
-        Detected::Exchange | Detected::Pasted(_) | Detected::Step7 => return Ok(Input { path, source, detected }),
+        Detected::Exchange | Detected::Pasted(_) | Detected::Step7 | Detected::Stx => {
+            return Ok(Input { path, source, detected });
+        }
         Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),
         Detected::Unreadable { why } => UnreadReason::Io(why.to_owned()),
         Detected::NotPlc => UnreadReason::NotPlc,

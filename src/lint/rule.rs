@@ -74,7 +74,7 @@ impl Rule {
     pub fn is_for(&self, language: Language) -> bool {
         self.dialects.iter().any(|dialect| match *dialect {
             "all" => true,
-            "pl7" => matches!(language, Language::Pl7Il | Language::Pl7St | Language::Exchange),
+            "pl7" => !matches!(language, Language::Awl(_)),
             "il" => language == Language::Pl7Il,
             "st" => language == Language::Pl7St,
             "s7" => matches!(language, Language::Awl(_)),

@@ -24,6 +24,32 @@ pub fn count_lines(text: &str) -> usize {
 pub struct Positions<'a> {
     outcome: &'a Outcome,
     indexes: Vec<OnceCell<LineIndex>>,
+    /// Of texts made of tables: offsets of the lines that name what stands below them.
+    headings: Vec<OnceCell<Vec<u32>>>,
+}
+
+/// A line of a project's tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry<'a> {
+    /// `%M10 W`, `Pump AT %Q2.0`.
+    pub text: &'a str,
+    /// `MAST - module 0`; `[DATA_UNIT]` for declarations.
+    pub module: &'a str,
+    /// Number of the place in the module, as the project counts them.
+    pub place: Option<&'a str>,
+}
+
+impl std::fmt::Display for Entry<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if !self.module.starts_with('[') && self.module != self.text {
+            f.write_str(self.module)?;
+            if let Some(place) = self.place {
+                write!(f, ", place {place}")?;
+            }
+            f.write_str(": ")?;
+        }
+        f.write_str(self.text)
+    }
 }
 
 /// A range to show; the end is exclusive.
@@ -35,7 +61,11 @@ pub struct Span {
 
 impl<'a> Positions<'a> {
     pub fn new(outcome: &'a Outcome) -> Self {
-        Self { outcome, indexes: outcome.files.iter().map(|_| OnceCell::new()).collect() }
+        Self {
+            outcome,
+            indexes: outcome.files.iter().map(|_| OnceCell::new()).collect(),
+            headings: outcome.files.iter().map(|_| OnceCell::new()).collect(),
+        }
     }
 
     pub fn file(&self, file: u32) -> Option<&'a SourceView> {
@@ -47,12 +77,47 @@ impl<'a> Positions<'a> {
         Some(self.indexes.get(file as usize)?.get_or_init(|| LineIndex::new(text)))
     }
 
+    /// Of a place in a text that was made of tables, in which lines and columns mean nothing: what stands there, and
+    /// where in the project. `None` for the text of a file.
+    pub fn entry(&self, file: u32, range: TextRange) -> Option<Entry<'a>> {
+        let view = self.file(file).filter(|it| it.made_of.is_some())?;
+        let headings = self.headings.get(file as usize)?.get_or_init(|| heading_lines(&view.text));
+        let start = clamp(&view.text, range).start();
+        let text = line_at(&view.text, start.into()).trim_end_matches(';');
+        let above = headings.partition_point(|&it| it <= u32::from(start));
+        let mut place = None;
+        let mut module = "";
+        for &at in headings.get(..above).unwrap_or_default().iter().rev() {
+            let line = line_at(&view.text, at as usize);
+            if let Some(number) = line.strip_prefix('@') {
+                place.get_or_insert(number);
+                continue;
+            }
+            module = line.strip_prefix("[XREF] ").unwrap_or(line);
+            break;
+        }
+        let is_heading = text.starts_with(['[', '@']);
+        Some(Entry { text: if is_heading { module } else { text }, module, place })
+    }
+
     /// The path and the span of a place; `None` when the run has no such file.
     pub fn span(&self, file: u32, range: TextRange) -> Option<Span> {
         let range = clamp(&self.file(file)?.text, range);
         let index = self.index(file)?;
         Some(Span { start: index.line_col(range.start()), end: index.line_col(range.end()) })
     }
+}
+
+/// Headings of the listing of a project (`[XREF] MAST - module 0`) and numbers of places in a module (`@20`).
+fn heading_lines(text: &str) -> Vec<u32> {
+    let starts = std::iter::once(0).chain(memchr::memchr_iter(b'\n', text.as_bytes()).map(|it| it + 1));
+    starts.filter(|&it| matches!(text.as_bytes().get(it), Some(b'[' | b'@'))).map(number).collect()
+}
+
+/// The line that begins at or goes through an offset, without its end.
+fn line_at(text: &str, offset: usize) -> &str {
+    let start = text.get(..offset).and_then(|it| it.rfind('\n')).map_or(0, |it| it + 1);
+    text.get(start..).and_then(|it| it.lines().next()).unwrap_or_default().trim()
 }
 
 /// A range widened to whole characters and held inside the text.

@@ -12,6 +12,7 @@ use super::heading::{
 use crate::model::entity::BlockKind;
 
 use super::scan::{Comments, Lines};
+use super::stx;
 
 /// What the user says that files are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -83,6 +84,8 @@ pub enum Detected {
     Pasted(Pl7Text),
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
+    /// A PL7 project: its text is the listing of its tables.
+    Stx,
     /// Part of a controller program, in a form that plclint does not read. `what` names the form.
     Unsupported { what: &'static str },
     /// It should be a controller program by its name, or was asked for, and is not text. `why` completes "not read: ".
@@ -205,12 +208,29 @@ pub fn has_plc_extension(path: &Path) -> bool {
 
 /// Decodes and recognises a file. Data that is not text is not decoded: its text is empty.
 pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (SourceText, Detected) {
+    if let Some(project) = project(hint, bytes, encoding) {
+        return match project {
+            Ok(source) => (source, Detected::Stx),
+            Err(why) => (decode(b"", encoding), Detected::Unreadable { why }),
+        };
+    }
     if let Some(detected) = detect_binary(hint, bytes, encoding) {
         return (decode(b"", encoding), detected);
     }
     let source = decode(bytes, encoding);
     let detected = detect(hint, &source.text);
     (source, detected)
+}
+
+/// The listing of a PL7 project, or why it has none; `None` if the bytes are no project.
+fn project(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> Option<Result<SourceText, &'static str>> {
+    let by_name = matches!(extension(hint.path), Extension::Form(unsupported::PROJECT, _));
+    if !(by_name || hint.explicit) || hint.dialect == Dialect::Step7 || !stx::is_archive(bytes) {
+        return None;
+    }
+    let listing = stx::listing(bytes, encoding.filter(|it| it.is_single_byte()));
+    // Archives of all kinds go by other names.
+    if by_name { Some(listing) } else { listing.ok().map(Ok) }
 }
 
 /// What a file is whose bytes are not text in the given encoding; `None` if they are.
@@ -921,7 +941,7 @@ mod tests {
             ("a.stl", Detected::NotPlc),
             ("a.txt", Detected::NotPlc),
             ("a.db", Detected::NotPlc),
-            ("a.stx", unsupported(unsupported::PROJECT)),
+            ("a.stx", Detected::Unreadable { why: stx::DAMAGED }),
             ("a.ufb", unsupported(unsupported::ENCRYPTED)),
             ("a.zef", unsupported(unsupported::CONTROL_EXPERT)),
         ] {

@@ -49,6 +49,7 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::Step7 => step7(&mut units, hint),
         Detected::Pasted(default) => pasted(&mut units, default, hint),
         Detected::Exchange => exchange(&mut units),
+        Detected::Stx => project(&mut units),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
             units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
         }
@@ -302,6 +303,39 @@ fn exchange(units: &mut Units<'_>) {
     if units.drafts.is_empty() {
         units.push(0, Draft::container());
     }
+}
+
+/// The listing of a PL7 project: blocks in brackets, of which those of the cross-reference name what they belong to.
+fn project(units: &mut Units<'_>) {
+    let mut start = 0;
+    for line in units.text.split_inclusive('\n') {
+        let code = line.trim_end();
+        if let Some(address) = code.strip_prefix("[XREF] ") {
+            units.push(start, Draft::new(project_entity(address), Some(Language::Pl7Xref)));
+        } else if code.starts_with('[') || start == 0 {
+            let label = (!code.is_empty()).then(|| code.into());
+            units.push(start, Draft { label, ..Draft::container() });
+        }
+        start += line.len();
+    }
+    if units.drafts.is_empty() {
+        units.push(0, Draft::container());
+    }
+}
+
+/// `MAST - module 0`, `MAST - CHART - PAGE 0 %X1`, `task 516 - SR3`.
+fn project_entity(address: &str) -> Entity {
+    if let Some(entity) = pl7_address(address) {
+        return entity;
+    }
+    let (task, rest) = address.split_once(" - ").unwrap_or((address, ""));
+    let named = pl7_address(task).and_then(|it| it.task());
+    let number = task.strip_prefix("task ").and_then(|it| it.parse().ok());
+    let task = named.or(number.map(Task::Numbered)).unwrap_or(Task::Mast);
+    if rest.starts_with("CHART") {
+        return Entity::Pl7 { task, section: None, part: Part::Chart(rest.into()) };
+    }
+    Entity::Pl7 { task, section: Some(rest.into()), part: Part::Main }
 }
 
 fn ends_program(code: &str) -> bool {

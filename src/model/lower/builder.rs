@@ -2,9 +2,9 @@
 
 use std::hash::BuildHasher as _;
 
-use rowan::TextRange;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
+use rowan::TextRange;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -135,11 +135,8 @@ impl Builder {
         let objects = &self.model.objects;
         let hash = |object: &Object| FxBuildHasher.hash_one(&object.text);
         let id = ObjectId(index(objects.len()));
-        let found = self.ids.entry(
-            hash(&object),
-            |it| objects[it.0 as usize] == object,
-            |it| hash(&objects[it.0 as usize]),
-        );
+        let found =
+            self.ids.entry(hash(&object), |it| objects[it.0 as usize] == object, |it| hash(&objects[it.0 as usize]));
         match found {
             Entry::Occupied(found) => return *found.get(),
             Entry::Vacant(entry) => entry.insert(id),

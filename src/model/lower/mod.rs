@@ -6,6 +6,7 @@ mod exchange;
 mod il;
 mod pl7;
 mod st;
+mod xref;
 
 use super::UnitModel;
 use super::entity::Entity;
@@ -19,6 +20,7 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => exchange::lower(root, text, entity),
+        Language::Pl7Xref => xref::lower(root, entity),
     }
 }
 
