@@ -84,13 +84,13 @@ impl<'b> Row<'b> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use proptest::prelude::*;
 
     use super::*;
 
     /// Builds a table: names and widths of fields, then records.
-    pub(in crate::source) fn table(fields: &[(&str, u8)], rows: &[&[&str]]) -> Vec<u8> {
+    fn table(fields: &[(&str, u8)], rows: &[&[&str]]) -> Vec<u8> {
         let record = 1 + fields.iter().map(|it| u16::from(it.1)).sum::<u16>();
         let header = 32 + 32 * fields.len() as u16 + 1;
         let mut out = vec![3, 116, 1, 1];

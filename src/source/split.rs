@@ -268,7 +268,8 @@ fn exchange(units: &mut Units<'_>) {
     }
     let mut state = State::Ended;
     let mut keys = SourceUnit::default();
-    for line in Lines::new(units.text, Comments::Pl7) {
+    let mut lines = Lines::new(units.text, Comments::Pl7);
+    while let Some(line) = lines.next() {
         if line.code.is_empty() {
             continue;
         }
@@ -277,6 +278,12 @@ fn exchange(units: &mut Units<'_>) {
             units.push(units.code_end, Draft { label: Some(block.into()), ..Draft::container() });
             keys = SourceUnit::default();
             state = if block == "[SOURCE_UNIT]" { State::Keys } else { State::Other };
+            if block == "[VENDOR]" {
+                // What looks like a comment in there need not be one.
+                units.code_end = next_block(units.text, line.code_start + line.code.len());
+                lines.skip_to(units.code_end);
+                continue;
+            }
             code = rest;
         } else if state == State::Ended {
             units.push(units.code_end, Draft::container());
@@ -303,6 +310,18 @@ fn exchange(units: &mut Units<'_>) {
     if units.drafts.is_empty() {
         units.push(0, Draft::container());
     }
+}
+
+/// Start of the first line after an offset that begins a block; the end of the text without one.
+fn next_block(text: &str, from: usize) -> usize {
+    let mut at = from;
+    for line in text.get(from..).unwrap_or_default().split_inclusive(['\n', '\r']) {
+        if at > from && exchange_block(line.trim_start()).is_some() {
+            return at;
+        }
+        at += line.len();
+    }
+    text.len()
 }
 
 /// The listing of a PL7 project: blocks in brackets, of which those of the cross-reference name what they belong to.

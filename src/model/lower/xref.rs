@@ -33,8 +33,9 @@ fn entry(b: &mut Builder, node: SyntaxNode<'_>) {
     let text: String = object.text().split_whitespace().collect();
     let mode = match mode.text() {
         "R" => Mode::Read,
-        "W" | "O" => Mode::Write,
-        "V" => Mode::InOut,
+        "W" => Mode::Write,
+        // Given to a function, which may leave it as it is.
+        "O" | "V" => Mode::InOut,
         // A function, a subroutine, an instance of a DFB: which unit of the project it is, its number does not tell.
         _ if !text.starts_with('%') => return,
         _ => Mode::Drive(Pin::Whole),
@@ -84,7 +85,7 @@ mod tests {
         let expected = [
             ("%M1", Mode::Read),
             ("%M2", Mode::Write),
-            ("%MW0:4", Mode::Write),
+            ("%MW0:4", Mode::InOut),
             ("%MW9:4", Mode::InOut),
             ("%TM0", Mode::Drive(Pin::Whole)),
             ("Cpt.In", Mode::Write),
