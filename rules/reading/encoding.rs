@@ -5,11 +5,17 @@ use rowan::{TextRange, TextSize};
 use crate::lint::{FileCx, Sink};
 
 pub(crate) fn check(cx: &FileCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if cx.text.is_ascii() {
-        return;
+    let (mut lost, mut mixed) = (Found::default(), Found::default());
+    // What is looked for begins with one of these bytes.
+    for at in memchr::memchr3_iter(0xC2, 0xC3, 0xEF, cx.text.as_bytes()) {
+        let mut characters = cx.text.get(at..).unwrap_or_default().chars();
+        let Some(first) = characters.next() else { continue };
+        if is_lost(first) {
+            lost.add(at, first);
+        } else if characters.next().is_some_and(|second| is_doubled(first, second)) {
+            mixed.add(at, first);
+        }
     }
-    let lost = Found::new(cx.text, |pair| is_lost(pair.0));
-    let mixed = Found::new(cx.text, |pair| is_doubled(pair.0, pair.1));
     if let Some(range) = lost.first {
         sink.report(range, format!("{} that mean nothing in the file's encoding", lost.count("character")));
     }
@@ -19,24 +25,17 @@ pub(crate) fn check(cx: &FileCx<'_>, sink: &mut Sink<'_, TextRange>) {
     }
 }
 
+#[derive(Default)]
 struct Found {
     first: Option<TextRange>,
     number: usize,
 }
 
 impl Found {
-    fn new(text: &str, wanted: impl Fn((char, char)) -> bool) -> Self {
-        let mut found = Self { first: None, number: 0 };
-        let mut characters = text.char_indices().peekable();
-        while let Some((at, it)) = characters.next() {
-            let next = characters.peek().map_or('\0', |it| it.1);
-            if !it.is_ascii() && wanted((it, next)) {
-                found.number += 1;
-                let start = TextSize::new(u32::try_from(at).unwrap_or(u32::MAX));
-                found.first.get_or_insert_with(|| TextRange::at(start, TextSize::of(it)));
-            }
-        }
-        found
+    fn add(&mut self, at: usize, character: char) {
+        self.number += 1;
+        let start = TextSize::new(u32::try_from(at).unwrap_or(u32::MAX));
+        self.first.get_or_insert_with(|| TextRange::at(start, TextSize::of(character)));
     }
 
     fn count(&self, what: &str) -> String {

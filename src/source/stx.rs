@@ -207,15 +207,15 @@ impl Listing {
         let [Some(task), Some(module), Some(place), Some(object), Some(mode)] = columns else { return };
         let chart = chart.map(Chart::new).unwrap_or_default();
         // Units in the order in which they are first met; of each, its entries in the order of the table.
-        let mut index: FxHashMap<(&[u8], &[u8], &[u8]), usize> = FxHashMap::default();
+        let mut index: FxHashMap<Place<'_>, usize> = FxHashMap::default();
         let mut units: Vec<(String, Vec<Row<'_>>)> = Vec::new();
         for row in table.rows() {
-            let of = (row.text(task), row.text(module), row.text(place));
-            let in_chart = chart.is_chart(of.1);
-            let key = if in_chart { of } else { (of.0, of.1, &b""[..]) };
+            let of = [task, module, place].map(|it| row.text(it));
+            let in_chart = chart.is_chart(of[1]);
+            let key = if in_chart { of } else { [of[0], of[1], b""] };
             let at = *index.entry(key).or_insert_with(|| {
-                let task = self.task(of.0);
-                let part = if in_chart { chart.part(of) } else { self.module(of.1) };
+                let task = self.task(of[0]);
+                let part = if in_chart { chart.part(of) } else { self.module(of[1]) };
                 units.push((format!("{task} - {part}"), Vec::new()));
                 units.len() - 1
             });
@@ -269,11 +269,14 @@ fn number_of(text: &[u8]) -> Option<u16> {
     u16::try_from(number).or_else(|_| i16::try_from(number).map(i16::cast_unsigned)).ok()
 }
 
+/// Task, module and place in it, as the tables number them.
+type Place<'b> = [&'b [u8]; 3];
+
 /// What the places of a chart are.
 #[derive(Default)]
 struct Chart<'b> {
     modules: FxHashSet<&'b [u8]>,
-    places: FxHashMap<(&'b [u8], &'b [u8], &'b [u8]), String>,
+    places: FxHashMap<Place<'b>, String>,
 }
 
 /// The module of the chart itself.
@@ -295,8 +298,8 @@ impl<'b> Chart<'b> {
                 // Which of its actions the place is, no value that was seen tells.
                 _ => format!("CHART - PAGE {page} %X{number}"),
             };
-            let of = (row.text(task), row.text(module), row.text(place));
-            chart.modules.insert(of.1);
+            let of = [task, module, place].map(|it| row.text(it));
+            chart.modules.insert(of[1]);
             chart.places.insert(of, part);
         }
         chart
@@ -306,8 +309,8 @@ impl<'b> Chart<'b> {
         number_of(module) == Some(CHART) || self.modules.contains(module)
     }
 
-    fn part(&self, of: (&[u8], &[u8], &[u8])) -> String {
+    fn part(&self, of: Place<'_>) -> String {
         let known = self.places.get(&of).cloned();
-        known.unwrap_or_else(|| format!("CHART - place {}", on_one_line(&String::from_utf8_lossy(of.2))))
+        known.unwrap_or_else(|| format!("CHART - place {}", on_one_line(&String::from_utf8_lossy(of[2]))))
     }
 }
