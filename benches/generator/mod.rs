@@ -168,73 +168,132 @@ pub fn pl7(bytes: usize, seed: u64) -> String {
     let mut number = 0;
     while text.len() < bytes {
         number += 1;
+        let mut section = Section::new(number);
         if random.one_in(3) {
             writeln!(text, "IL : MAST - Poste{number} - PRL").expect("a string");
             for _ in 0..20 + random.below(60) {
-                il_sentence(&mut text, &mut random, number);
+                il_sentence(&mut text, &mut random, &mut section);
             }
         } else {
             writeln!(text, "ST : MAST - Poste{number} - POST").expect("a string");
             for _ in 0..20 + random.below(60) {
-                st_sentence(&mut text, &mut random, number);
+                st_sentence(&mut text, &mut random, &mut section);
             }
         }
     }
     text
 }
 
-fn st_sentence(text: &mut String, random: &mut Random, number: u64) {
-    let base = number * 100 % 30000 + random.below(90);
-    writeln!(text, "! (* {} {} *)", random.pick(DEVICES), random.pick(STATES)).expect("a string");
-    let input = format!("%I{}.{}", random.below(8) + 1, random.below(16));
-    match random.below(6) {
-        0 => writeln!(text, "  %MW{base} := %MW{} * 10 + %KW{};", base + 1, random.below(100)).expect("a string"),
-        1 => {
-            writeln!(text, "  IF {input} AND NOT %M{} THEN", random.below(200)).expect("a string");
-            writeln!(text, "    %MW{base} := %MW{base} + 1;\n    SET %M{};\n  ELSE", base + 300).expect("a string");
-            writeln!(text, "    %MW{base} := 0;\n    RESET %M{};\n  END_IF;", base + 300).expect("a string");
-        }
-        2 => {
-            writeln!(text, "  FOR %MW{base} := 0 TO {} DO", random.below(30)).expect("a string");
-            writeln!(text, "    %MW{}[%MW{base}] := %KW{}[%MW{base}];\n  END_FOR;", base + 100, random.below(50))
-                .expect("a string");
-        }
-        3 => writeln!(text, "  %MF{} := SQRT(%MF{}) / 2.5;", base * 2, base * 2 + 2).expect("a string"),
-        4 => writeln!(text, "  %MW{base}:8 := %MW{}:8;", base + 20).expect("a string"),
-        _ => {
-            writeln!(
-                text,
-                "  IF RE {input} AND (%MW{base} >= {}) THEN INC %MW{}; END_IF;",
-                random.below(500),
-                base + 1
-            )
-            .expect("a string");
-        }
+/// Objects of one section: a hundred words and a hundred bits of its own, as far as the address space goes.
+struct Section {
+    first: u64,
+    /// Bits and timers are driven in one place each.
+    next_bit: u64,
+    next_timer: u64,
+}
+
+impl Section {
+    fn new(number: u64) -> Self {
+        Self { first: number * 100 % 65_000, next_bit: 0, next_timer: number * 3 % 250 }
+    }
+
+    /// A word that is computed with, one of thirty.
+    fn word(&self, random: &mut Random) -> u64 {
+        self.first + random.below(30)
+    }
+
+    /// First word of a table of eight, one of two.
+    fn table(&self, random: &mut Random) -> u64 {
+        self.first + 30 + 8 * random.below(2)
+    }
+
+    /// A word that the section receives.
+    fn source(&self, random: &mut Random) -> u64 {
+        self.first + 48 + random.below(10)
+    }
+
+    /// First word of a floating-point number.
+    fn float(&self, random: &mut Random) -> u64 {
+        self.first + 60 + 2 * random.below(18)
+    }
+
+    /// A bit that the section receives.
+    fn request(&self, random: &mut Random) -> u64 {
+        self.first + 90 + random.below(10)
+    }
+
+    /// A bit that nothing drives yet.
+    fn bit(&mut self) -> u64 {
+        self.next_bit += 1;
+        self.first + self.next_bit % 90
+    }
+
+    fn timer(&mut self) -> u64 {
+        self.next_timer += 1;
+        self.next_timer % 255
     }
 }
 
-fn il_sentence(text: &mut String, random: &mut Random, number: u64) {
+fn st_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
     writeln!(text, "! (* {} {} *)", random.pick(DEVICES), random.pick(STATES)).expect("a string");
     let input = format!("%I{}.{}", random.below(8) + 1, random.below(16));
-    let word = number * 100 % 30000 + random.below(90);
-    match random.below(4) {
-        0 => {
-            writeln!(text, "      LD      {input}\n      AND(N   %M{}", random.below(200)).expect("a string");
-            writeln!(text, "      OR      %M{}\n      )\n      ST      %M{}", random.below(200), word + 300)
+    let word = section.word(random);
+    let source = section.source(random);
+    match random.below(6) {
+        0 => writeln!(text, "  %MW{word} := %MW{source} * 10 + %KW{};", random.below(100)).expect("a string"),
+        1 => {
+            let bit = section.bit();
+            writeln!(text, "  IF {input} AND NOT %M{} THEN", section.request(random)).expect("a string");
+            writeln!(text, "    %MW{word} := %MW{word} + 1;\n    SET %M{bit};\n  ELSE").expect("a string");
+            writeln!(text, "    %MW{word} := 0;\n    RESET %M{bit};\n  END_IF;").expect("a string");
+        }
+        2 => {
+            writeln!(text, "  FOR %MW{word} := 0 TO {} DO", random.below(7)).expect("a string");
+            writeln!(
+                text,
+                "    %MW{}[%MW{word}] := %KW{}[%MW{word}];\n  END_FOR;",
+                section.table(random),
+                random.below(50)
+            )
+            .expect("a string");
+        }
+        3 => {
+            writeln!(text, "  %MF{} := SQRT(%MF{}) / 2.5;", section.float(random), section.float(random))
                 .expect("a string");
         }
-        1 => {
-            writeln!(text, "      LD      {input}\n      MPS\n      AND     %M{}", random.below(200))
+        4 => writeln!(text, "  %MW{}:8 := %MW{}:8;", section.first + 30, section.first + 38).expect("a string"),
+        _ => {
+            writeln!(text, "  IF RE {input} AND (%MW{source} >= {}) THEN INC %MW{word}; END_IF;", random.below(500))
                 .expect("a string");
-            writeln!(text, "      S       %M{}\n      MPP\n      R       %M{}", word + 300, word + 301)
+        }
+    }
+    if random.one_in(400) {
+        writeln!(text, "! %M{} := %M{};", section.first, section.first + 1).expect("a string");
+    }
+}
+
+fn il_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
+    writeln!(text, "! (* {} {} *)", random.pick(DEVICES), random.pick(STATES)).expect("a string");
+    let input = format!("%I{}.{}", random.below(8) + 1, random.below(16));
+    let (request, other) = (section.request(random), section.request(random));
+    match random.below(4) {
+        0 => {
+            writeln!(text, "      LD      {input}\n      AND(N   %M{request}").expect("a string");
+            writeln!(text, "      OR      %M{other}\n      )\n      ST      %M{}", section.bit()).expect("a string");
+        }
+        1 => {
+            writeln!(text, "      LD      {input}\n      MPS\n      AND     %M{request}").expect("a string");
+            writeln!(text, "      S       %M{}\n      MPP\n      R       %M{}", section.bit(), section.bit())
                 .expect("a string");
         }
         2 => {
-            writeln!(text, "      LD      [%MW{word}>{}]\n      IN      %TM{}", random.below(500), random.below(60))
+            let source = section.source(random);
+            writeln!(text, "      LD      [%MW{source}>{}]\n      IN      %TM{}", random.below(500), section.timer())
                 .expect("a string");
         }
         _ => {
-            writeln!(text, "      LD      TRUE\n      [%MW{word}:=%MW{}+{}]", word + 1, random.below(50))
+            let (word, source) = (section.word(random), section.source(random));
+            writeln!(text, "      LD      TRUE\n      [%MW{word}:=%MW{source}+{}]", random.below(50))
                 .expect("a string");
         }
     }

@@ -18,6 +18,9 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 
 /// Reports conditions that an earlier arm has; whether the last arm's is one.
 fn repeats(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: IfStmt<'_>) -> bool {
+    if statement.arms().nth(1).is_none() {
+        return false;
+    }
     let mut seen: FxHashMap<Vec<String>, TextRange> = FxHashMap::default();
     let mut is_repeated = false;
     for condition in statement.arms().filter_map(|it| it.condition()).filter_map(bare) {

@@ -36,7 +36,17 @@ pub fn together(exprs: &Exprs, conditions: &[ExprId]) -> Verdict {
     }
     conjuncts.sort_unstable();
     conjuncts.dedup();
-    let opposed = |&it: &ExprId| exprs.find_complement(it).is_some_and(|it| conjuncts.binary_search(&it).is_ok());
+    let has = |it: ExprId| conjuncts.binary_search(&it).is_ok();
+    // Also `NOT (a AND b)` beside `a` and `b`, as the ELSE of an IF gives it.
+    let opposed = |&it: &ExprId| {
+        exprs.find_complement(it).is_some_and(has)
+            || matches!(*exprs.get(it), Expr::Not(inner) if matches!(*exprs.get(inner), Expr::And(a, b) if {
+                let mut parts = Vec::new();
+                spread(exprs, a, &mut parts);
+                spread(exprs, b, &mut parts);
+                parts.into_iter().all(has)
+            }))
+    };
     if conjuncts.iter().any(opposed) {
         return Verdict::Never;
     }
@@ -44,10 +54,33 @@ pub fn together(exprs: &Exprs, conditions: &[ExprId]) -> Verdict {
     if conjuncts.is_empty() {
         return Verdict::Possible;
     }
+    if are_free(exprs, &conjuncts) {
+        return Verdict::Possible;
+    }
     match Table::new(exprs, &conjuncts) {
         Some(table) => table.decide(exprs, &conjuncts),
         None => Verdict::NotDecided,
     }
+}
+
+/// Whether conjuncts, none of which is another's complement, are bits, their absences, and comparisons of different
+/// terms with constants: no law ties any of them to another.
+fn are_free(exprs: &Exprs, conjuncts: &[ExprId]) -> bool {
+    let mut terms = Vec::new();
+    for &it in conjuncts {
+        let atom = if let Expr::Not(inner) = *exprs.get(it) { inner } else { it };
+        match *exprs.get(atom) {
+            Expr::Read { .. } => {}
+            Expr::Compare(_, a, b) => match (number(exprs, a), number(exprs, b)) {
+                (None, Some(_)) => terms.push(a),
+                (Some(_), None) => terms.push(b),
+                _ => return false,
+            },
+            _ => return false,
+        }
+    }
+    terms.sort_unstable();
+    terms.windows(2).all(|it| it[0] != it[1])
 }
 
 /// Whether two conditions surely never hold at once.

@@ -467,15 +467,15 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
         }
     }
     objects.retain(|it| !it.uses.is_empty());
-    objects.sort_by(|a, b| {
-        let (x, y) = (&a.object.footprint, &b.object.footprint);
-        (&x.area, x.start, std::cmp::Reverse(x.bits), a.object.ty, a.object.indexed).cmp(&(
-            &y.area,
-            y.start,
-            std::cmp::Reverse(y.bits),
-            b.object.ty,
-            b.object.indexed,
-        ))
+    // Areas hold names: they are compared once each, not once a comparison of objects.
+    let mut areas: Vec<&Area> =
+        objects.iter().map(|it| &it.object.footprint.area).collect::<FxHashSet<_>>().into_iter().collect();
+    areas.sort_unstable();
+    let ranks: FxHashMap<&Area, u32> = areas.into_iter().zip(0..).collect();
+    objects.sort_by_cached_key(|it| {
+        let place = &it.object.footprint;
+        let rank = ranks.get(&place.area).copied().unwrap_or(u32::MAX);
+        (rank, place.start, std::cmp::Reverse(place.bits), it.object.ty, it.object.indexed)
     });
     objects
 }

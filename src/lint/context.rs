@@ -35,7 +35,7 @@ impl<'a> UnitCx<'a> {
         settings: &'a Settings,
         target: &'a Target,
     ) -> Self {
-        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: Kinds::default() }
+        Self { model, parse, text, settings, target, nodes: OnceCell::new(), kinds: Kinds::new(model) }
     }
 
     /// Every node of a kind, in the order of the text; none for objects, names, literals and instructions. The tree is

@@ -7,7 +7,8 @@ use rustc_hash::FxHashMap;
 
 use super::literal::{self, Value};
 use super::object::{self, Type};
-use crate::syntax::pl7::ast::{BinOp, Expr, UnaryOp};
+use super::unit::UnitModel;
+use crate::syntax::pl7::ast::{BinOp, Expr, Literal, ObjectRef, UnaryOp};
 use crate::syntax::pl7::functions;
 use crate::syntax::{SyntaxKind, SyntaxNode, WalkEvent};
 
@@ -104,12 +105,18 @@ impl Kind {
 }
 
 /// Kinds of the expressions of a tree, as they are asked for.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Kinds<'t> {
+    model: &'t UnitModel,
     known: RefCell<FxHashMap<SyntaxNode<'t>, Kind>>,
 }
 
 impl<'t> Kinds<'t> {
+    /// Of the tree that the model was made from.
+    pub fn new(model: &'t UnitModel) -> Self {
+        Self { model, known: RefCell::default() }
+    }
+
     /// Walks an expression once, operands before what they are operands of.
     pub fn of(&self, expr: Expr<'t>) -> Kind {
         if let Some(kind) = self.known(expr) {
@@ -118,7 +125,8 @@ impl<'t> Kinds<'t> {
         for event in expr.syntax().walk() {
             if let WalkEvent::Leave(node) = event
                 && let Some(inner) = Expr::cast(node)
-                && self.known(inner).is_none()
+                && !matches!(inner, Expr::Name(_) | Expr::Literal(_) | Expr::Object(_))
+                && !self.known.borrow().contains_key(&node)
             {
                 let kind = self.compute(inner);
                 self.known.borrow_mut().insert(node, kind);
@@ -127,8 +135,27 @@ impl<'t> Kinds<'t> {
         self.operand(Some(expr))
     }
 
+    /// The kind of what has no operands, or what was found before.
     fn known(&self, expr: Expr<'t>) -> Option<Kind> {
-        self.known.borrow().get(&expr.syntax()).copied()
+        match expr {
+            Expr::Name(_) => Some(Kind::Unknown),
+            Expr::Literal(it) => Some(literal_kind(it)),
+            Expr::Object(it) => Some(self.object(it)),
+            _ => self.known.borrow().get(&expr.syntax()).copied(),
+        }
+    }
+
+    fn object(&self, it: ObjectRef<'t>) -> Kind {
+        let text = it.syntax().text();
+        if let Some(&id) = self.model.addresses.get(&*text) {
+            return Kind::of_type(self.model.object(id).ty);
+        }
+        let address = it.address();
+        let object = match it.index() {
+            Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()),
+            None => object::pl7::parse(&address),
+        };
+        object.map_or(Kind::Unknown, |it| Kind::of_type(it.ty))
     }
 
     /// Kind of an operand, whose turn was before.
@@ -138,23 +165,7 @@ impl<'t> Kinds<'t> {
 
     fn compute(&self, expr: Expr<'t>) -> Kind {
         match expr {
-            Expr::Literal(it) => it.token().map_or(Kind::Unknown, |token| match token.kind() {
-                SyntaxKind::CharString => Kind::Text,
-                _ => match literal::parse_pl7(token.text()) {
-                    Ok(Value::Bool(_)) => Kind::Bit,
-                    Ok(Value::Int { .. }) => Kind::Integer,
-                    Ok(Value::Real(_)) => Kind::Float,
-                    _ => Kind::Unknown,
-                },
-            }),
-            Expr::Object(it) => {
-                let object = match it.index() {
-                    Some(_) => object::pl7::parse_indexed(&it.address(), it.suffix().as_deref()),
-                    None => object::pl7::parse(&it.address()),
-                };
-                object.map_or(Kind::Unknown, |it| Kind::of_type(it.ty))
-            }
-            Expr::Name(_) => Kind::Unknown,
+            Expr::Name(_) | Expr::Literal(_) | Expr::Object(_) => self.operand(Some(expr)),
             Expr::Paren(it) => self.operand(it.expr()),
             Expr::Unary(it) => match it.op() {
                 Some(UnaryOp::Re | UnaryOp::Fe) => Kind::Bit,
@@ -190,6 +201,18 @@ impl<'t> Kinds<'t> {
     }
 }
 
+fn literal_kind(it: Literal<'_>) -> Kind {
+    it.token().map_or(Kind::Unknown, |token| match token.kind() {
+        SyntaxKind::CharString => Kind::Text,
+        _ => match literal::parse_pl7(token.text()) {
+            Ok(Value::Bool(_)) => Kind::Bit,
+            Ok(Value::Int { .. }) => Kind::Integer,
+            Ok(Value::Real(_)) => Kind::Float,
+            _ => Kind::Unknown,
+        },
+    })
+}
+
 /// Kind of an arithmetic or logical operation.
 fn join(a: Kind, b: Kind) -> Kind {
     if a == Kind::Bit && b == Kind::Bit {
@@ -213,13 +236,18 @@ fn join(a: Kind, b: Kind) -> Kind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::entity::{Entity, Part, Task};
+    use crate::model::lower;
+    use crate::syntax::Language;
     use crate::syntax::pl7::ast;
 
     fn kind(value: &str) -> Kind {
         let parse = crate::syntax::pl7::parse_st(&format!("! Sym := {value};"));
         assert_eq!(parse.errors(), [], "{value}");
         let root = parse.syntax();
-        let kinds = Kinds::default();
+        let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let model = lower::lower(root, &parse.syntax().text(), entity, Language::Pl7St);
+        let kinds = Kinds::new(&model);
         let mut assignments = root.descendants().filter_map(ast::AssignStmt::cast);
         let statement = assignments.next().expect("an assignment");
         let value: Option<Expr> = statement.children().nth(1);

@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use rowan::TextRange;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use super::entity::{BlockName, Entity};
@@ -432,6 +433,8 @@ pub struct UnitModel {
     pub entity: Entity,
     pub language: Language,
     pub objects: Vec<Object>,
+    /// Direct objects by their address as written, where the lowering looks them up so.
+    pub addresses: FxHashMap<SmolStr, ObjectId>,
     pub exprs: Exprs,
     pub statements: Vec<Statement>,
     pub accesses: Vec<Access>,

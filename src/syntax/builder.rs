@@ -7,7 +7,7 @@ use std::hash::Hasher as _;
 
 use rowan::{GreenNode, GreenToken, NodeOrToken};
 
-use super::kind::SyntaxKind;
+use super::kind::{SyntaxKind, raw};
 
 const MOST_SLOTS: usize = 4096;
 
@@ -34,12 +34,20 @@ impl TreeBuilder {
 
     pub(super) fn finish_node(&mut self) {
         let Some((kind, first)) = self.parents.pop() else { return };
-        let node = GreenNode::new(kind.into(), self.children.drain(first..));
+        let node = GreenNode::new(raw::of(kind), self.children.drain(first..));
         self.children.push(NodeOrToken::Node(node));
     }
 
     pub(super) fn token(&mut self, kind: SyntaxKind, text: &str) {
-        let raw = rowan::SyntaxKind::from(kind);
+        self.raw_token(raw::of(kind), text);
+    }
+
+    /// A node that holds one token and nothing else.
+    pub(super) fn leaf(&mut self, node: SyntaxKind, token: SyntaxKind, text: &str) {
+        self.raw_token(raw::of_leaf(node, token), text);
+    }
+
+    fn raw_token(&mut self, raw: rowan::SyntaxKind, text: &str) {
         if text.len() > LONGEST_CACHED {
             self.children.push(NodeOrToken::Token(GreenToken::new(raw, text)));
             return;
@@ -66,7 +74,7 @@ impl TreeBuilder {
             Some(NodeOrToken::Node(node)) if self.children.is_empty() => node,
             last => {
                 let children = self.children.into_iter().chain(last);
-                GreenNode::new(SyntaxKind::Root.into(), children.collect::<Vec<_>>())
+                GreenNode::new(raw::of(SyntaxKind::Root), children.collect::<Vec<_>>())
             }
         }
     }

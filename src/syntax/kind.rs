@@ -16,7 +16,7 @@ kinds! {
     // Trivia: never seen by a grammar, kept in the tree.
     /// Blanks and tabs.
     Whitespace,
-    /// One line break: LF, CRLF or CR. In AWL with the blanks that indent the next line.
+    /// A line break: LF, CRLF or CR. In AWL with the blanks that indent the next line, in PL7 also with empty lines.
     Newline,
     /// A comment of the language, delimiters included.
     Comment,
@@ -178,15 +178,30 @@ impl SyntaxKind {
     }
 }
 
-impl From<SyntaxKind> for rowan::SyntaxKind {
-    fn from(kind: SyntaxKind) -> Self {
-        Self(kind as u16)
-    }
-}
+/// The number of a kind in a green tree. A node that holds one token and nothing else is stored as that token, with the
+/// kind of the node in the high byte: half of all nodes are such, and cost no memory of their own then.
+pub(super) mod raw {
+    use super::{KINDS, SyntaxKind};
 
-impl From<rowan::SyntaxKind> for SyntaxKind {
-    /// Of a number that is no kind: [`SyntaxKind::Error`].
-    fn from(raw: rowan::SyntaxKind) -> Self {
-        KINDS.get(usize::from(raw.0)).copied().unwrap_or(Self::Error)
+    const _: () = assert!(KINDS.len() <= 256, "a kind fits a byte");
+    const _: () = assert!(SyntaxKind::Whitespace as u16 == 0, "no node has the number that says there is none");
+
+    pub(in crate::syntax) fn of(kind: SyntaxKind) -> rowan::SyntaxKind {
+        rowan::SyntaxKind(kind as u16)
+    }
+
+    pub(in crate::syntax) fn of_leaf(node: SyntaxKind, token: SyntaxKind) -> rowan::SyntaxKind {
+        rowan::SyntaxKind((node as u16) << 8 | token as u16)
+    }
+
+    /// Kind of the node or token itself.
+    pub(in crate::syntax) fn kind(raw: rowan::SyntaxKind) -> SyntaxKind {
+        KINDS.get(usize::from(raw.0 & 0xFF)).copied().unwrap_or(SyntaxKind::Error)
+    }
+
+    /// Kind of the node that is stored as its one token.
+    pub(in crate::syntax) fn leaf(raw: rowan::SyntaxKind) -> Option<SyntaxKind> {
+        let node = usize::from(raw.0 >> 8);
+        (node != 0).then(|| KINDS.get(node).copied().unwrap_or(SyntaxKind::Error))
     }
 }

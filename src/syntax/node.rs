@@ -12,13 +12,20 @@ use std::marker::PhantomData;
 
 use rowan::{GreenNodeData, GreenTokenData, NodeOrToken, TextRange, TextSize};
 
-use super::kind::SyntaxKind;
+use super::kind::{SyntaxKind, raw};
 
 /// A node and its place in the unit.
 #[derive(Clone, Copy)]
 pub struct SyntaxNode<'t> {
-    green: &'t GreenNodeData,
+    green: Green<'t>,
     start: TextSize,
+}
+
+#[derive(Clone, Copy)]
+enum Green<'t> {
+    Node(&'t GreenNodeData),
+    /// A node that is stored as its one token.
+    Leaf(&'t GreenTokenData),
 }
 
 /// A token and its place in the unit.
@@ -37,7 +44,12 @@ pub enum SyntaxElement<'t> {
 /// Identity, not structure: tokens are shared, so the place counts too.
 impl PartialEq for SyntaxNode<'_> {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.green, other.green) && self.start == other.start
+        let is_same = match (self.green, other.green) {
+            (Green::Node(a), Green::Node(b)) => std::ptr::eq(a, b),
+            (Green::Leaf(a), Green::Leaf(b)) => std::ptr::eq(a, b),
+            (Green::Node(_), Green::Leaf(_)) | (Green::Leaf(_), Green::Node(_)) => false,
+        };
+        is_same && self.start == other.start
     }
 }
 
@@ -45,7 +57,10 @@ impl Eq for SyntaxNode<'_> {}
 
 impl Hash for SyntaxNode<'_> {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        std::ptr::from_ref(self.green).hash(state);
+        match self.green {
+            Green::Node(it) => std::ptr::from_ref(it).hash(state),
+            Green::Leaf(it) => std::ptr::from_ref(it).hash(state),
+        }
         self.start.hash(state);
     }
 }
@@ -67,23 +82,33 @@ impl Hash for SyntaxToken<'_> {
 
 impl<'t> SyntaxNode<'t> {
     pub(super) fn new_root(green: &'t GreenNodeData) -> Self {
-        Self { green, start: TextSize::new(0) }
+        Self { green: Green::Node(green), start: TextSize::new(0) }
     }
 
     pub fn kind(self) -> SyntaxKind {
-        self.green.kind().into()
+        match self.green {
+            Green::Node(it) => raw::kind(it.kind()),
+            Green::Leaf(it) => raw::leaf(it.kind()).unwrap_or(SyntaxKind::Error),
+        }
     }
 
     pub fn text_range(self) -> TextRange {
-        TextRange::at(self.start, self.green.text_len())
+        let len = match self.green {
+            Green::Node(it) => it.text_len(),
+            Green::Leaf(it) => it.text_len(),
+        };
+        TextRange::at(self.start, len)
     }
 
     /// The text of all tokens; borrowed when there is one.
     pub fn text(self) -> Cow<'t, str> {
+        if let Green::Leaf(token) = self.green {
+            return Cow::Borrowed(token.text());
+        }
         let mut tokens = self.descendant_tokens();
         let Some(first) = tokens.next() else { return Cow::Borrowed("") };
         let Some(second) = tokens.next() else { return Cow::Borrowed(first.text()) };
-        let mut text = String::with_capacity(self.green.text_len().into());
+        let mut text = String::with_capacity(self.text_range().len().into());
         for token in [first, second].into_iter().chain(tokens) {
             text.push_str(token.text());
         }
@@ -91,7 +116,13 @@ impl<'t> SyntaxNode<'t> {
     }
 
     pub fn children_with_tokens(self) -> Elements<'t> {
-        Elements { raw: self.green.children(), start: self.start }
+        match self.green {
+            Green::Node(it) => Elements { raw: Some(it.children()), only: None, start: self.start },
+            Green::Leaf(green) => {
+                let only = Some(SyntaxToken { green, start: self.start });
+                Elements { raw: None, only, start: self.start }
+            }
+        }
     }
 
     pub fn children(self) -> impl Iterator<Item = SyntaxNode<'t>> + Clone {
@@ -159,7 +190,7 @@ impl fmt::Debug for SyntaxNode<'_> {
 
 impl<'t> SyntaxToken<'t> {
     pub fn kind(self) -> SyntaxKind {
-        self.green.kind().into()
+        raw::kind(self.green.kind())
     }
 
     pub fn text(self) -> &'t str {
@@ -210,7 +241,9 @@ impl<'t> SyntaxElement<'t> {
 /// Children of a node with their places.
 #[derive(Debug, Clone)]
 pub struct Elements<'t> {
-    raw: rowan::Children<'t>,
+    raw: Option<rowan::Children<'t>>,
+    /// Of a node that is stored as its one token.
+    only: Option<SyntaxToken<'t>>,
     start: TextSize,
 }
 
@@ -219,21 +252,21 @@ impl<'t> Iterator for Elements<'t> {
 
     #[inline]
     fn next(&mut self) -> Option<SyntaxElement<'t>> {
+        let Some(raw) = &mut self.raw else { return self.only.take().map(SyntaxElement::Token) };
         let start = self.start;
-        Some(match self.raw.next()? {
-            NodeOrToken::Node(green) => {
-                self.start += green.text_len();
-                SyntaxElement::Node(SyntaxNode { green, start })
+        Some(match raw.next()? {
+            NodeOrToken::Node(it) => {
+                self.start += it.text_len();
+                SyntaxElement::Node(SyntaxNode { green: Green::Node(it), start })
             }
             NodeOrToken::Token(green) => {
                 self.start += green.text_len();
-                SyntaxElement::Token(SyntaxToken { green, start })
+                match raw::leaf(green.kind()) {
+                    Some(_) => SyntaxElement::Node(SyntaxNode { green: Green::Leaf(green), start }),
+                    None => SyntaxElement::Token(SyntaxToken { green, start }),
+                }
             }
         })
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        self.raw.size_hint()
     }
 }
 

@@ -260,7 +260,10 @@ impl<'t> Parser<'t> {
         cursor.builder.start_node(SyntaxKind::Root);
         let mut wrappers = Vec::new();
         let mut open = 0_u32;
-        for at in 0..self.events.len() {
+        let mut next = 0;
+        while next < self.events.len() {
+            let at = next;
+            next += 1;
             match std::mem::replace(&mut self.events[at], Event::Tombstone) {
                 Event::Tombstone => {}
                 Event::Start { kind, forward_parent } => {
@@ -277,9 +280,18 @@ impl<'t> Parser<'t> {
                         }
                     }
                     cursor.trivia();
-                    for kind in wrappers.drain(..).rev() {
+                    let leaf = match self.events.get(next..next + 2) {
+                        Some(&[Event::Token(token), Event::Finish]) => Some(token),
+                        _ => None,
+                    };
+                    // The first is the innermost.
+                    for kind in wrappers.drain(usize::from(leaf.is_some())..).rev() {
                         cursor.builder.start_node(kind);
                         open += 1;
+                    }
+                    if let (Some(token), Some(node)) = (leaf, wrappers.pop()) {
+                        cursor.leaf(node, token);
+                        next += 2;
                     }
                 }
                 Event::Finish => {
@@ -313,7 +325,7 @@ struct Cursor<'t> {
     builder: TreeBuilder,
 }
 
-impl Cursor<'_> {
+impl<'t> Cursor<'t> {
     fn trivia(&mut self) {
         while self.tokens.get(self.index).is_some_and(|it| it.kind.is_trivia()) {
             self.token(None);
@@ -321,10 +333,23 @@ impl Cursor<'_> {
     }
 
     fn token(&mut self, kind: Option<SyntaxKind>) {
-        let Some(token) = self.tokens.get(self.index) else { return };
+        if let Some((token, text)) = self.next() {
+            self.builder.token(kind.unwrap_or(token.kind), text);
+        }
+    }
+
+    fn leaf(&mut self, node: SyntaxKind, token: SyntaxKind) {
+        if let Some((_, text)) = self.next() {
+            self.builder.leaf(node, token, text);
+        }
+    }
+
+    fn next(&mut self) -> Option<(Token, &'t str)> {
+        let token = *self.tokens.get(self.index)?;
         let end = self.offset + token.len as usize;
-        self.builder.token(kind.unwrap_or(token.kind), &self.text[self.offset..end]);
+        let text = &self.text[self.offset..end];
         self.offset = end;
         self.index += 1;
+        Some((token, text))
     }
 }

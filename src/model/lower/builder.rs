@@ -70,6 +70,7 @@ impl Builder {
             entity,
             language,
             objects: Vec::new(),
+            addresses: FxHashMap::default(),
             exprs: Exprs::default(),
             statements: Vec::new(),
             accesses: Vec::new(),

@@ -2,7 +2,6 @@
 
 use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use super::builder::Builder;
@@ -26,8 +25,6 @@ pub(super) enum Kind {
 
 pub(super) struct Pl7 {
     pub(super) b: Builder,
-    /// Objects by their address as written, without index.
-    known: FxHashMap<SmolStr, ObjectId>,
 }
 
 /// The heading line, else the first sentence's first token.
@@ -44,7 +41,7 @@ fn heading(root: SyntaxNode<'_>) -> TextRange {
 
 impl Pl7 {
     pub(super) fn new(root: SyntaxNode<'_>, entity: Entity, language: Language) -> Self {
-        Self { b: Builder::new(entity, language, heading(root)), known: FxHashMap::default() }
+        Self { b: Builder::new(entity, language, heading(root)) }
     }
 
     fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
@@ -66,7 +63,7 @@ impl Pl7 {
         let address = it.address();
         let index = it.index();
         if index.is_none()
-            && let Some(&id) = self.known.get(&address)
+            && let Some(&id) = self.b.model.addresses.get(&address)
         {
             return (id, range);
         }
@@ -91,7 +88,7 @@ impl Pl7 {
             Err(error) => return (self.address_error(error, range, &address), range),
         };
         if is_direct {
-            self.known.insert(address, id);
+            self.b.model.addresses.insert(address, id);
         }
         (id, range)
     }

@@ -2,6 +2,7 @@
 //!
 //! Numbers that only some controller lacks are not judged here: that is the business of [`crate::target`].
 
+use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
 use smol_str::{SmolStr, format_smolstr};
@@ -39,10 +40,19 @@ const LONGEST_SUGGESTION_SOURCE: usize = 40;
 /// [`AddressErrorKind::Malformed`] with the nearest valid form where there is one; [`AddressErrorKind::OutOfRange`] for
 /// a number that no controller has.
 pub fn parse(address: &str) -> Result<Object, AddressError> {
-    let upper = address.to_ascii_uppercase();
+    let upper = upper_case(address);
     match read(&upper) {
         Ok(place) => Ok(place.object(address.into())),
         Err(error) => Err(with_suggestion(error, &upper)),
+    }
+}
+
+/// Nearly always it is written so.
+fn upper_case(address: &str) -> Cow<'_, str> {
+    if address.bytes().any(|it| it.is_ascii_lowercase()) {
+        Cow::Owned(address.to_ascii_uppercase())
+    } else {
+        Cow::Borrowed(address)
     }
 }
 
