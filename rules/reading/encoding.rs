@@ -17,7 +17,7 @@ pub(crate) fn check(cx: &FileCx<'_>, sink: &mut Sink<'_, TextRange>) {
         }
     }
     if let Some(range) = lost.first {
-        sink.report(range, format!("{} that mean nothing in the file's encoding", lost.count("character")));
+        sink.report(range, format!("{} without a meaning in the file's encoding", lost.count("character")));
     }
     if let Some(range) = mixed.first {
         sink.report(range, format!("{} stored as UTF-8 and read in another encoding", mixed.count("character")))

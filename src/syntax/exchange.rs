@@ -295,7 +295,9 @@ fn at_end_of_declaration(p: &Parser<'_>) -> bool {
 
 /// Whether a declaration begins though the one before lacks its semicolon: what may belong to that one does.
 fn at_next(p: &Parser<'_>) -> bool {
-    p.at(Ident) && (p.nth(1) == Some(Colon) || name_length(p) == Some(1))
+    // `AR_W:20` is a type.
+    let is_instance = p.nth(1) == Some(Colon) && p.nth(2) != Some(SyntaxKind::Number);
+    p.at(Ident) && (is_instance || name_length(p) == Some(1))
 }
 
 /// `[SOURCE_UNIT]` and what belongs to it.

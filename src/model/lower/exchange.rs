@@ -47,8 +47,6 @@ impl Lowering<'_> {
             let (address, at) = (self.joined(it), it.text_range());
             match object::pl7::parse(&address) {
                 Ok(object) => Some(object),
-                // The generic symbol of a channel (PL7:1264) names no single object.
-                Err(_) if address.get(..3).is_some_and(|it| it.eq_ignore_ascii_case("%CH")) => None,
                 Err(error) => {
                     self.b.oddity(OddityKind::Address(error), at, address);
                     None
@@ -100,5 +98,86 @@ impl Lowering<'_> {
         let characters = u32::try_from(trimmed.chars().count()).unwrap_or(u32::MAX);
         self.b.model.remarks.push(Remark { kind, characters, range });
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::exchange;
+
+    fn model(text: &str) -> UnitModel {
+        let parse = exchange::parse(text);
+        assert_eq!(parse.errors(), []);
+        lower(parse.syntax(), text, Entity::Container)
+    }
+
+    /// Name, address, type, initial value and comment of each declaration.
+    #[track_caller]
+    fn check(text: &str, expected: &[[&str; 5]]) {
+        let model = model(text);
+        let found: Vec<[&str; 5]> = model
+            .symbols
+            .iter()
+            .map(|it| {
+                let place = std::ops::Range::<usize>::from(model.place(it.anchor));
+                assert_eq!(text.get(place), Some(it.name.as_str()));
+                let address = it.object.as_ref().map_or("", |it| it.text.as_str());
+                let (initial, comment) = (it.initial.as_deref(), it.comment.as_deref());
+                [it.name.as_str(), address, it.ty.as_str(), initial.unwrap_or_default(), comment.unwrap_or_default()]
+            })
+            .collect();
+        assert_eq!(found, expected, "{text}");
+    }
+
+    #[test]
+    fn declarations() {
+        check(
+            "[DATA_UNIT]\nVAR_GLOBAL\nPump AT %M0 : EBOOL (* a (b) *); Cpt_vis : Cpt_pieces (**);\n\
+             Lim AT %KW3:WORD:=16#FF ; Tab AT %MW10:5 : AR_W : 5;\r\nÉtat AT %MW4:X2\nEND_VAR\n",
+            &[
+                ["Pump", "%M0", "EBOOL", "", "a (b)"],
+                ["Cpt_vis", "", "Cpt_pieces", "", ""],
+                ["Lim", "%KW3", "WORD", "16#FF", ""],
+                ["Tab", "%MW10:5", "AR_W:5", "", ""],
+                ["État", "%MW4:X2", "", "", ""],
+            ],
+        );
+    }
+
+    #[test]
+    fn odd_declarations() {
+        check(
+            "VAR_GLOBAL Pump AT %M0; (* behind *)\nMotor AT %M1 : EBOOL;\n(* of the next *) Vitesse AT %MW1 : WORD\n\
+             Variateur AT %M2; 2x AT %M3; Pump-1 AT %M4; at %M5; Var at %M6;\nOne AT %M7 : EBOOL Two AT %M8 : EBOOL;\nEND_VAR",
+            &[
+                ["Pump", "%M0", "", "", "behind"],
+                ["Motor", "%M1", "EBOOL", "", ""],
+                ["Vitesse", "%MW1", "WORD", "", ""],
+                ["Variateur", "%M2", "", "", ""],
+                ["2x", "%M3", "", "", ""],
+                ["Pump-1", "%M4", "", "", ""],
+                ["Var", "%M6", "", "", ""],
+                ["One", "%M7", "EBOOL", "", ""],
+                ["Two", "%M8", "EBOOL", "", ""],
+            ],
+        );
+        // Nothing of the vendor's part declares anything.
+        check("[VENDOR]\nPump AT %M0 : EBOOL;\n[DATA_UNIT]\nMotor AT %M1;\n", &[["Motor", "%M1", "", "", ""]]);
+    }
+
+    #[test]
+    fn addresses_that_are_none() {
+        let model = model("Pump AT %MX0 : EBOOL; Axis AT %CH2.0 : BOOL; Late AT %MW3:X20 : BOOL;");
+        let errors: Vec<&str> = model.oddities.iter().map(|it| it.text.as_str()).collect();
+        assert_eq!(errors, ["%MX0", "%MW3:X20"], "a channel may have a symbol (PL7:1264)");
+        assert_eq!(model.symbols.iter().map(|it| it.object.is_some()).collect::<Vec<_>>(), [false, true, false]);
+    }
+
+    #[test]
+    fn lengths_of_comments() {
+        let model = model("[SOURCE_UNIT]\nCOMMENT = 'année' NAME = 'x'\n[DATA_UNIT]\nPump AT %M0 (*  été *);");
+        let found: Vec<_> = model.remarks.iter().map(|it| (it.kind, it.characters)).collect();
+        assert_eq!(found, [(RemarkKind::Module, 5), (RemarkKind::Symbol, 3)]);
     }
 }
