@@ -24,8 +24,8 @@ pub fn count_lines(text: &str) -> usize {
 pub struct Positions<'a> {
     outcome: &'a Outcome,
     indexes: Vec<OnceCell<LineIndex>>,
-    /// Of texts made of tables: offsets of the lines that name what stands below them.
-    headings: Vec<OnceCell<Vec<u32>>>,
+    /// Of texts made of tables: offsets of the lines that name a module, and of those that number a place in it.
+    headings: Vec<OnceCell<[Vec<u32>; 2]>>,
 }
 
 /// A line of a project's tables.
@@ -81,21 +81,17 @@ impl<'a> Positions<'a> {
     /// where in the project. `None` for the text of a file.
     pub fn entry(&self, file: u32, range: TextRange) -> Option<Entry<'a>> {
         let view = self.file(file).filter(|it| it.made_of.is_some())?;
-        let headings = self.headings.get(file as usize)?.get_or_init(|| heading_lines(&view.text));
+        let headings = self.headings.get(file as usize)?;
+        let [modules, places] = headings.get_or_init(|| ["[", "@"].map(|mark| lines_with(&view.text, mark)));
         let start = clamp(&view.text, range).start();
         let text = line_at(&view.text, start.into()).trim_end_matches(';');
-        let above = headings.partition_point(|&it| it <= u32::from(start));
-        let mut place = None;
-        let mut module = "";
-        for &at in headings.get(..above).unwrap_or_default().iter().rev() {
-            let line = line_at(&view.text, at as usize);
-            if let Some(number) = line.strip_prefix('@') {
-                place.get_or_insert(number);
-                continue;
-            }
-            module = line.strip_prefix("[XREF] ").unwrap_or(line);
-            break;
-        }
+        let above =
+            |lines: &[u32]| lines.get(lines.partition_point(|&it| it <= u32::from(start)).checked_sub(1)?).copied();
+        let module = above(modules);
+        let place = above(places).filter(|it| module.is_none_or(|module| module < *it));
+        let line = |at: u32| line_at(&view.text, at as usize);
+        let place = place.and_then(|it| line(it).strip_prefix('@'));
+        let module = module.map_or("", |it| line(it).strip_prefix("[XREF] ").unwrap_or(line(it)));
         let is_heading = text.starts_with(['[', '@']);
         Some(Entry { text: if is_heading { module } else { text }, module, place })
     }
@@ -108,10 +104,10 @@ impl<'a> Positions<'a> {
     }
 }
 
-/// Headings of the listing of a project (`[XREF] MAST - module 0`) and numbers of places in a module (`@20`).
-fn heading_lines(text: &str) -> Vec<u32> {
+/// Offsets of the lines of a text that begin with a mark.
+fn lines_with(text: &str, mark: &str) -> Vec<u32> {
     let starts = std::iter::once(0).chain(memchr::memchr_iter(b'\n', text.as_bytes()).map(|it| it + 1));
-    starts.filter(|&it| matches!(text.as_bytes().get(it), Some(b'[' | b'@'))).map(number).collect()
+    starts.filter(|&it| text.get(it..).is_some_and(|it| it.starts_with(mark))).map(number).collect()
 }
 
 /// The line that begins at or goes through an offset, without its end.
