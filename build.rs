@@ -70,6 +70,15 @@ impl Page {
         }
     }
 
+    /// A key that may be missing: `yes`, or not at all.
+    fn flag(&self, key: &str) -> bool {
+        match self.keys.iter().find(|it| it.0 == key).map(|it| it.1.as_str()) {
+            None => false,
+            Some("yes") => true,
+            Some(other) => panic!("{}: {key} {other}", self.path.display()),
+        }
+    }
+
     fn list(&self, key: &str) -> Vec<&str> {
         self.get(key).split(',').map(str::trim).filter(|it| !it.is_empty()).collect()
     }
@@ -99,10 +108,11 @@ impl Page {
         writeln!(
             out,
             "    super::Rule {{ code: {:?}, name: {name:?}, group: {group:?}, summary: {:?}, severity: \
-             super::Severity::{severity}, default: {default}, dialects: &{:?}, sources: &{:?}, page: {:?}, check: \
-             super::Check::{scope}({module}::check) }},",
+             super::Severity::{severity}, default: {default}, by_controller: {}, dialects: &{:?}, sources: &{:?}, page: \
+             {:?}, check: super::Check::{scope}({module}::check) }},",
             self.get("code"),
             self.get("summary"),
+            self.flag("controller"),
             self.list("dialects"),
             self.list("sources"),
             self.body,

@@ -151,7 +151,7 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
-    let target = target_of(db, settings, Some(unit.file(db)), family);
+    let target = settings.target_or(family, *named_controller(db, unit.file(db)));
     let cx = UnitCx::new(&model, &tree, text, settings, &target);
     let findings = run_rules(settings, |rule, findings| match rule.check {
         Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
@@ -288,7 +288,8 @@ pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable 
 pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
     let project = db.project();
     let settings = project.settings(db);
-    let target = target_of(db, settings, program.files(db).first().copied(), program.family(db));
+    let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
+    let target = settings.target_or(program.family(db), named);
     let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
     let facts = symbols::resolve(symbol_table(db, program), &facts);
     let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
@@ -351,14 +352,6 @@ fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec
         }
     }
     ran
-}
-
-/// The controller of the settings when it is one of that vendor's, else the one that the file names, else whatever
-/// holds for all of them.
-fn target_of(db: &dyn Db, settings: &Settings, file: Option<SourceFile>, family: Family) -> Target {
-    let configured = settings.controller().and_then(|it| it.parse().ok());
-    let named = || *named_controller(db, file?);
-    configured.filter(|it: &Target| it.family() == family).or_else(named).unwrap_or(Target::any(family))
 }
 
 /// The controller that a project is made for.
@@ -628,6 +621,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
         };
         outcome.unread.push(Unread { path: it.path, reason });
     }
+    outcome.untargeted = untargeted(&linted, &settings, &outcome.active);
     let encodings: Vec<&'static str> = linted.iter().map(|it| it.source.encoding.as_str()).collect();
     let mut db = RootDatabase::new(settings, None);
     partly_read.dedup();
@@ -683,6 +677,16 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     // Dropping all facts takes time, and the process is about to end.
     std::mem::forget(db);
     outcome
+}
+
+/// Families of files for which no controller is configured, though an active rule asks for one.
+fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Family> {
+    let asks = |family: Family| active.iter().any(|it| it.by_controller && it.is_for_family(family));
+    let is_named = |it: &Input| it.detected == Detected::Stx && stx::controller(&it.source.text).is_some();
+    let is_read = |wanted: Family| inputs.iter().any(|it| family(it.detected) == Some(wanted) && !is_named(it));
+    let mut families = vec![Family::Pl7, Family::Step7];
+    families.retain(|&it| settings.target(it).controller().is_none() && asks(it) && is_read(it));
+    families
 }
 
 /// Bytes of tokens that the syntax could not place.

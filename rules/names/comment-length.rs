@@ -4,13 +4,13 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::symbols::RemarkKind;
-use crate::target::pl7::{MODULE_COMMENT, SYMBOL_COMMENT};
+use crate::target::pl7::{SECTION_COMMENT_LENGTH, SYMBOL_COMMENT_LENGTH};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for remark in &cx.model.remarks {
         let (limit, what) = match remark.kind {
-            RemarkKind::Symbol => (SYMBOL_COMMENT, "symbol"),
-            RemarkKind::Module => (MODULE_COMMENT, "section or subroutine"),
+            RemarkKind::Symbol => (SYMBOL_COMMENT_LENGTH, "symbol"),
+            RemarkKind::Module => (SECTION_COMMENT_LENGTH, "section or subroutine"),
         };
         if remark.characters > limit.value {
             let message =

@@ -9,9 +9,6 @@ use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, LiteralValue};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !cx.model.has_floats {
-        return;
-    }
     for expr in cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast) {
         let (Some(BinOp::Eq | BinOp::Ne), Some(operator)) = (expr.op(), expr.operator()) else { continue };
         let (Some(a), Some(b)) = (expr.lhs(), expr.rhs()) else { continue };

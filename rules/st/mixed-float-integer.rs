@@ -10,7 +10,7 @@ use crate::syntax::pl7::ast::{AssignStmt, BinExpr, CallExpr, CallStmt, Expr};
 use crate::syntax::pl7::functions::Function;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !cx.model.has_floats {
+    if !cx.model.mixes_floats {
         return;
     }
     for expr in cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast) {

@@ -40,14 +40,17 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 
 /// Whether some `(*` is followed by another before any `*)`, or by none: what nearly no text has.
 fn is_suspicious(text: &str) -> bool {
-    let mut rest = text;
-    while let Some(open) = rest.find("(*") {
-        let inner = &rest[open + MARK..];
-        let Some(close) = inner.find("*)") else { return true };
-        if inner[..close].contains("(*") {
-            return true;
+    let text = text.as_bytes();
+    let mut inner = None;
+    for at in memchr::memchr_iter(b'*', text) {
+        let opens = at > 0 && text[at - 1] == b'(';
+        match inner {
+            // `(*)` opens and does not close.
+            Some(start) if text.get(at + 1) == Some(&b')') && at >= start => inner = None,
+            Some(_) if opens => return true,
+            None if opens => inner = Some(at + 1),
+            Some(_) | None => {}
         }
-        rest = &inner[close + MARK..];
     }
-    false
+    inner.is_some()
 }

@@ -2,7 +2,9 @@
 //!
 //! **Invariant:** no position in it. Places are anchors, which number the places of a unit in order.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use std::hash::BuildHasher as _;
+
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::conditions;
@@ -46,6 +48,22 @@ pub struct FactObject {
     pub object: Object,
     /// The value is computed with: arithmetic or an order comparison reads it, or an arithmetic result is stored in it.
     pub number: bool,
+    /// Of what makes it one object with those of other units, see [`Self::is_same`]. 0 for an object of the unit alone.
+    pub hash: u64,
+}
+
+impl FactObject {
+    fn new(object: &Object, number: bool) -> Self {
+        let key = (&object.footprint, object.ty, object.indexed);
+        let hash = if is_shared(object) { FxBuildHasher.hash_one(key) } else { 0 };
+        Self { object: object.clone(), number, hash }
+    }
+
+    /// Whether two units name one object, whatever its spelling.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let key = |it: &Self| (it.object.ty, it.object.indexed);
+        self.hash == other.hash && key(self) == key(other) && self.object.footprint == other.object.footprint
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -181,7 +199,7 @@ impl UnitFacts {
         Self {
             entity: model.entity.clone(),
             language: model.language,
-            objects: objects.map(|(object, number)| FactObject { object: object.clone(), number }).collect(),
+            objects: objects.map(|(object, number)| FactObject::new(object, number)).collect(),
             uses,
             calls: calls(model),
             exclusive_calls: exclusive_calls(model),

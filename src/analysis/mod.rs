@@ -4,6 +4,7 @@
 
 pub mod calls;
 pub mod conditions;
+pub mod counts;
 pub mod drives;
 pub mod facts;
 pub mod program;

@@ -1,9 +1,10 @@
 //! A program as a whole: the access table over all units, the call graph, and what scans what.
 
+use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Site;
-use super::facts::{self, FactCall, UnitFacts, Use};
+use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::{Callee, Mode, Section};
@@ -438,29 +439,45 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
     let targets = calls.iter().filter_map(|it| Some(((it.unit, it.index), it.target?))).collect();
     let mut by_rank: Vec<u32> = (0..as_index(units.len())).collect();
     by_rank.sort_by_key(|&it| order[it as usize]);
-    let mut ids: FxHashMap<(&'a crate::model::object::Footprint, crate::model::object::Type, bool), u32> =
-        FxHashMap::default();
-    let mut objects: Vec<ObjectUses<'a>> = Vec::new();
-    for unit in by_rank {
+    // Which object of the program each object of each unit is.
+    let mut ids: HashTable<u32> = HashTable::new();
+    let mut firsts: Vec<&'a FactObject> = Vec::new();
+    let mut numbers: Vec<bool> = Vec::new();
+    let mut counts: Vec<usize> = Vec::new();
+    let mut locals: Vec<Vec<Option<u32>>> = vec![Vec::new(); units.len()];
+    for &unit in &by_rank {
         let facts = units[unit as usize];
-        let local: Vec<Option<u32>> = facts
-            .objects
-            .iter()
-            .map(|fact| {
-                if !facts::is_shared(&fact.object) {
-                    return None;
-                }
-                let key = (&fact.object.footprint, fact.object.ty, fact.object.indexed);
-                let id = *ids.entry(key).or_insert_with(|| {
-                    objects.push(ObjectUses { object: &fact.object, number: false, uses: Vec::new() });
-                    as_index(objects.len() - 1)
-                });
-                objects[id as usize].number |= fact.number;
-                Some(id)
-            })
-            .collect();
+        let local = &mut locals[unit as usize];
+        local.extend(facts.objects.iter().map(|fact| {
+            if !facts::is_shared(&fact.object) {
+                return None;
+            }
+            let next = as_index(firsts.len());
+            let is_same = |&id: &u32| fact.is_same(firsts[id as usize]);
+            let id = *ids.entry(fact.hash, is_same, |&id| firsts[id as usize].hash).or_insert(next).get();
+            if id == next {
+                firsts.push(fact);
+                numbers.push(false);
+                counts.push(0);
+            }
+            numbers[id as usize] |= fact.number;
+            Some(id)
+        }));
         for it in &facts.uses {
             if let Some(Some(id)) = local.get(it.object as usize) {
+                counts[*id as usize] += 1;
+            }
+        }
+    }
+    let object = |((fact, number), count): ((&&'a FactObject, bool), usize)| ObjectUses {
+        object: &fact.object,
+        number,
+        uses: Vec::with_capacity(count),
+    };
+    let mut objects: Vec<ObjectUses<'a>> = firsts.iter().zip(numbers).zip(counts).map(object).collect();
+    for unit in by_rank {
+        for it in &units[unit as usize].uses {
+            if let Some(Some(id)) = locals[unit as usize].get(it.object as usize) {
                 let mode = actual_mode(units, &targets, unit, it);
                 objects[*id as usize].uses.push(GlobalUse { unit, mode, it });
             }

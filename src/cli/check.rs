@@ -176,10 +176,13 @@ fn merge(mut outcomes: Vec<Outcome>) -> Outcome {
         }
         merged.unread.extend(outcome.unread);
         merged.active.extend(outcome.active);
+        merged.untargeted.extend(outcome.untargeted);
         merged.internal_errors.extend(outcome.internal_errors);
     }
     // The findings of a file all come from one group, in order.
     merged.diagnostics.sort_by_key(|it| it.finding.place.file);
+    merged.untargeted.sort_unstable();
+    merged.untargeted.dedup();
     merged.active.sort_by_key(|it| it.code);
     merged.active.dedup_by_key(|it| it.code);
     merged

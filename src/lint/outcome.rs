@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::finding::{Finding, Location};
 use super::rule::Rule;
+use crate::model::entity::Family;
 
 /// A file as it was read, for showing excerpts and for counting columns.
 #[derive(Debug, Clone)]
@@ -69,6 +70,8 @@ pub struct Outcome {
     pub unread: Vec<Unread>,
     /// Every rule that was switched on.
     pub active: Vec<&'static Rule>,
+    /// Families of the programs that were read without a controller, when some rule would find more with one; sorted.
+    pub untargeted: Vec<Family>,
     /// Rules that panicked, with the file: the run went on without them.
     pub internal_errors: Vec<String>,
     pub elapsed: Duration,

@@ -5,6 +5,7 @@ use rowan::TextRange;
 use super::context::{FileCx, ProgramCx, UnitCx};
 use super::finding::{Finding, Severity, Sink};
 use crate::analysis::Site;
+use crate::model::entity::Family;
 use crate::syntax::Language;
 
 /// What a rule looks at, which decides when it runs again after an edit.
@@ -42,6 +43,8 @@ pub struct Rule {
     pub severity: Severity,
     /// Whether the rule is part of the `default` set.
     pub default: bool,
+    /// Whether it finds more when the controller is known.
+    pub by_controller: bool,
     /// Dialects that it is for: `pl7`, `il`, `st`, `s7`, `all`.
     pub dialects: &'static [&'static str],
     /// Places in the source documents: `PL7:1463`.
@@ -79,6 +82,14 @@ impl Rule {
             "st" => language == Language::Pl7St,
             "s7" => matches!(language, Language::Awl(_)),
             _ => false,
+        })
+    }
+
+    /// Whether programs of a family are among what the rule looks at.
+    pub fn is_for_family(&self, family: Family) -> bool {
+        self.dialects.iter().any(|dialect| match family {
+            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st"),
+            Family::Step7 => matches!(*dialect, "all" | "s7"),
         })
     }
 

@@ -15,8 +15,10 @@ use toml::Spanned;
 use super::finding::Severity;
 use super::rule::{Rule, rules};
 use super::select::{Selection, Selector};
+use crate::model::entity::Family;
 use crate::source::decode::Encoding;
 use crate::source::walk::WalkOptions;
+use crate::target::{Counted, CountedBy, Target};
 
 /// Name of the configuration file.
 pub const FILE_NAME: &str = "plclint.toml";
@@ -102,8 +104,8 @@ pub struct Overrides {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 struct File {
-    target: Target,
-    objects: BTreeMap<String, u32>,
+    target: TargetConfig,
+    objects: BTreeMap<Spanned<String>, Spanned<u32>>,
     files: Files,
     entity: Vec<EntityHint>,
     task: Vec<TaskConfig>,
@@ -116,7 +118,7 @@ struct File {
 /// The controller that programs are for.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-struct Target {
+struct TargetConfig {
     /// `TSX 37-22`, `CPU 314`.
     controller: Option<Spanned<String>>,
     /// `V3`, where the documents distinguish versions.
@@ -295,6 +297,7 @@ impl Settings {
         if let Some(name) = &overrides.controller {
             controller(name).map_err(|message| ConfigError { origin: Origin::Option("--target"), message })?;
         }
+        counts(&text, &file, &overrides)?;
         let base = selection(registry, &text, &file.rules, &overrides)?;
         let mut per_file = Vec::new();
         for it in &file.per_file {
@@ -356,29 +359,50 @@ impl Settings {
         selection.rules().collect()
     }
 
-    /// The controller, by a name that [`crate::target::Target`] reads.
+    /// The controller, by a name that [`Target`] reads.
     pub fn controller(&self) -> Option<&str> {
         let file = self.0.file.target.controller.as_ref().map(|it| it.get_ref().as_str());
         self.0.overrides.controller.as_deref().or(file)
     }
 
-    /// The controller's version; none when the command line names another controller than the file.
-    pub fn version(&self) -> Option<&str> {
-        let target = &self.0.file.target;
-        match &self.0.overrides.controller {
-            Some(controller) if target.controller.as_ref().map(|it| it.get_ref()) != Some(controller) => None,
-            _ => target.version.as_deref(),
+    /// Whether the command line names another controller than the file, which then says nothing of it.
+    fn is_another_controller(&self) -> bool {
+        let parse = |it: &str| it.parse::<Target>().ok();
+        let file = self.0.file.target.controller.as_ref().map(|it| it.get_ref().as_str());
+        match (&self.0.overrides.controller, file) {
+            (Some(controller), Some(file)) => parse(controller) != parse(file),
+            _ => false,
         }
     }
 
-    /// Configured number of objects of a family, by its mnemonic: `M`, `MW`.
-    pub fn objects(&self, family: &str) -> Option<u32> {
-        self.0.file.objects.get(family).copied()
+    /// The controller's version; none when the command line names another controller than the file.
+    pub fn version(&self) -> Option<&str> {
+        self.0.file.target.version.as_deref().filter(|_| !self.is_another_controller())
     }
 
-    /// Every configured number of objects, in the order of mnemonics.
-    pub fn all_objects(&self) -> impl Iterator<Item = (&str, u32)> {
-        self.0.file.objects.iter().map(|(family, &count)| (family.as_str(), count))
+    /// Configured number of objects of a family, by its mnemonic: `M`, `MW`; none when the command line names another
+    /// controller than the file.
+    pub fn objects(&self, family: &str) -> Option<u32> {
+        if self.is_another_controller() {
+            return None;
+        }
+        self.0.file.objects.iter().find(|it| it.0.get_ref() == family).map(|it| *it.1.get_ref())
+    }
+
+    /// What programs of a family are checked for: the configured controller with the configured counts, when it is one of
+    /// that family, else what holds for every controller of the family.
+    pub fn target(&self, family: Family) -> Target {
+        self.target_or(family, None)
+    }
+
+    /// As [`Self::target`], for a program that names its controller itself: unless one is configured, it is that one.
+    pub fn target_or(&self, family: Family, named: Option<Target>) -> Target {
+        let or_any = |it: Option<Target>| it.or(named).unwrap_or(Target::any(family));
+        match self.controller().and_then(|it| it.parse::<Target>().ok()) {
+            Some(it) if it.family() != family => or_any(None),
+            it if self.0.file.objects.is_empty() => or_any(it),
+            it => or_any(it).with_counts(|key| self.objects(key)),
+        }
     }
 
     pub fn tasks(&self) -> &[TaskConfig] {
@@ -501,7 +525,58 @@ fn selection(
 
 /// Whether the tables know a controller.
 fn controller(name: &str) -> Result<(), String> {
-    name.parse::<crate::target::Target>().map(drop).map_err(|it| it.to_string())
+    name.parse::<Target>().map(drop).map_err(|it| it.to_string())
+}
+
+/// Judges `[objects]` by the controller that it is written for, or by every one when none is named.
+fn counts(text: &Text<'_>, file: &File, overrides: &Overrides) -> Result<(), ConfigError> {
+    let named = file.target.controller.as_ref().map(|it| it.get_ref()).or(overrides.controller.as_ref());
+    let named = named.and_then(|it| it.parse::<Target>().ok());
+    let targets: Vec<Target> = match named {
+        Some(it) => vec![it],
+        None => [Family::Pl7, Family::Step7].map(Target::any).into(),
+    };
+    for (key, count) in &file.objects {
+        let numbered = |target: &Target| {
+            let numbered = target.all_numbered().iter();
+            numbered.clone().find(|it| it.key == key.get_ref() && !it.key.is_empty())
+        };
+        let known: Vec<_> = targets.iter().filter_map(|it| Some((it, numbered(it)?))).collect();
+        // Of several families that know the key, it is enough when one has as many.
+        let too_many = |(target, numbered): &(&Target, &crate::target::Numbered)| {
+            let most = target.count(numbered.what).filter(|it| *count.get_ref() > it.value)?;
+            let of = match most.by {
+                CountedBy::Controller(name) => format!("a {name} has"),
+                CountedBy::Family | CountedBy::Configuration => "the largest controller has".to_owned(),
+            };
+            Some(format!("{of} {} {} at most ({})", most.value, numbered.plural, most.source))
+        };
+        let errors: Vec<String> = known.iter().filter_map(too_many).collect();
+        if known.is_empty() {
+            let keys = targets.iter().flat_map(Target::all_numbered).map(|it| it.key).filter(|it| !it.is_empty());
+            let mut keys: Vec<&str> = keys.collect();
+            keys.sort_unstable();
+            keys.dedup();
+            let message = format!("no objects are counted as `{}`; known: {}", key.get_ref(), keys.join(", "));
+            return Err(text.error(Some(key.span()), message));
+        }
+        if errors.len() == known.len() {
+            return Err(text.error(Some(count.span()), errors.join("; ")));
+        }
+    }
+    let configured = |what: Counted| {
+        let key = Target::any(Family::Pl7).numbered(what)?.key;
+        file.objects.iter().find(|it| it.0.get_ref() == key).map(|it| it.1)
+    };
+    if let (Some(timers), Some(old)) = (configured(Counted::Timers), configured(Counted::OldTimers))
+        && let Some(most) = targets.first().and_then(Target::all_timers)
+        && timers.get_ref().saturating_add(*old.get_ref()) > most.value
+    {
+        let sum = timers.get_ref().saturating_add(*old.get_ref());
+        let message = format!("`TM` and `T` are {sum} timers, and {} are the most ({})", most.value, most.source);
+        return Err(text.error(Some(old.span()), message));
+    }
+    Ok(())
 }
 
 /// Reads the name of an encoding; `auto` is none.
@@ -655,6 +730,74 @@ mod tests {
         assert_eq!(settings.enabled(rule("I004"), "a"), Some(Severity::Advice));
         assert_eq!(settings.enabled(rule("X003"), "a"), Some(Severity::Warning));
         assert_eq!(settings.enabled(rule("W001"), "a"), Some(Severity::Error));
+    }
+
+    #[test]
+    fn counts_are_those_of_the_controller_they_are_written_for() {
+        use crate::target::Count;
+
+        let count = |text: &str, overrides: Overrides, family: Family, what: Counted| {
+            parse_with(text, overrides).unwrap().target(family).count(what)
+        };
+        let none = Overrides::default;
+        let configured =
+            |value: u32, key: &'static str| Some(Count { value, by: CountedBy::Configuration, source: key });
+        let text = "[target]\ncontroller = 'TSX 37-22'\n[objects]\nMW = 1000\nTM = 32";
+        assert_eq!(count(text, none(), Family::Pl7, Counted::Words), configured(1000, "MW"));
+        assert_eq!(count(text, none(), Family::Pl7, Counted::Timers), configured(32, "TM"));
+        let bits = count(text, none(), Family::Pl7, Counted::Bits);
+        assert_eq!(bits, Some(Count { value: 256, by: CountedBy::Controller("TSX 37-22"), source: "PL7:1523" }));
+        let other = count(text, none(), Family::Step7, Counted::Timers).unwrap();
+        assert_eq!((other.value, other.by), (2048, CountedBy::Family), "no count of another family's controller");
+
+        // The same controller in another spelling, and another one.
+        let target = |name: &str| Overrides { controller: Some(name.into()), ..Overrides::default() };
+        assert_eq!(count(text, target("tsx3722"), Family::Pl7, Counted::Words), configured(1000, "MW"));
+        let words = count(text, target("TSX 57-453"), Family::Pl7, Counted::Words).unwrap();
+        assert_eq!((words.value, words.by), (31_232, CountedBy::Controller("TSX 57-453")));
+
+        // Without a controller, a key counts for each family that has it.
+        let text = "[objects]\nM = 128\nT = 200\nZ = 16";
+        assert_eq!(count(text, none(), Family::Pl7, Counted::Bits), configured(128, "M"));
+        assert_eq!(count(text, none(), Family::Pl7, Counted::OldTimers), configured(200, "T"));
+        assert_eq!(count(text, none(), Family::Step7, Counted::Bytes), configured(128, "M"));
+        assert_eq!(count(text, none(), Family::Step7, Counted::Timers), configured(200, "T"));
+        assert_eq!(count(text, none(), Family::Step7, Counted::Counters), configured(16, "Z"));
+    }
+
+    #[test]
+    fn wrong_counts_have_a_place() {
+        let error = |text: &str| parse(text).unwrap_err().to_string();
+        let micro = "[target]\ncontroller = 'TSX 37-22'\n[objects]\n";
+        assert_eq!(
+            error(&format!("{micro}MZ = 1")),
+            "plclint.toml:4:1: no objects are counted as `MZ`; known: C, DR, KW, M, MN, MW, R, T, TM, X, XM"
+        );
+        assert!(error("[objects]\nmw = 1").starts_with("plclint.toml:2:1: no objects are counted as `mw`; known: C,"));
+        assert_eq!(
+            error(&format!("{micro}M = 300")),
+            "plclint.toml:4:5: a TSX 37-22 has 256 internal bits at most (PL7:1523)"
+        );
+        assert_eq!(
+            error(&format!("{micro}XM = 1")),
+            "plclint.toml:4:6: a TSX 37-22 has 0 macro-steps at most (PL7:4280)"
+        );
+        assert_eq!(
+            error(&format!("{micro}TM = 40\nT = 30")),
+            "plclint.toml:5:5: `TM` and `T` are 70 timers, and 64 are the most (PL7:999)"
+        );
+        assert_eq!(
+            error("[objects]\nM = 32635"),
+            "plclint.toml:2:5: the largest controller has 32634 internal bits at most (PL7:1691); the largest controller \
+             has 16384 bytes of memory at most (the vendor's general documentation)"
+        );
+        assert!(error("[objects]\nTM = 300").starts_with("plclint.toml:2:6: the largest controller has 255 timers"));
+        assert!(error(&format!("{micro}Z = 1")).contains("no objects are counted as `Z`"));
+        assert!(error("[objects]\nM = -1").starts_with("plclint.toml:2:5: "));
+        assert!(error("[objects]\nM = 'all'").starts_with("plclint.toml:2:5: "));
+        // %KW has no end but the program's size, and a system's number of bits is not configured.
+        assert!(parse(&format!("{micro}KW = 20000\nTM = 64")).is_ok());
+        assert!(error(&format!("{micro}'' = 1")).contains("no objects are counted as ``"));
     }
 
     #[test]

@@ -33,7 +33,20 @@ const fn rule(
     sources: &'static [&'static str],
 ) -> Rule {
     let check = Check::Unit(|_, _| ());
-    Rule { code, name, group, summary, severity, default, dialects: &["all"], sources, page: PAGE, check }
+    let by_controller = false;
+    Rule {
+        code,
+        name,
+        group,
+        summary,
+        severity,
+        default,
+        by_controller,
+        dialects: &["all"],
+        sources,
+        page: PAGE,
+        check,
+    }
 }
 
 pub(crate) static RULES: &[Rule] = &[

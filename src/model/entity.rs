@@ -11,6 +11,16 @@ pub enum Family {
     Step7,
 }
 
+impl Family {
+    /// The software that programs it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Pl7 => "PL7",
+            Self::Step7 => "STEP 7",
+        }
+    }
+}
+
 /// What scans a unit. Units of different tasks interrupt one another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Task {

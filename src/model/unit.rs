@@ -312,6 +312,22 @@ pub struct Loop {
     pub parent: Option<u32>,
 }
 
+/// What stands in the brackets of an indexed object.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Index {
+    pub what: IndexKind,
+    pub range: TextRange,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum IndexKind {
+    Object(ObjectId),
+    /// An immediate value.
+    Constant(i64),
+    /// An expression of several terms.
+    Computed,
+}
+
 /// A constant of a type whose exact value a rule asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constant {
@@ -447,6 +463,8 @@ pub struct UnitModel {
     pub symbols: Vec<Symbol>,
     /// Comments whose length is limited.
     pub remarks: Vec<Remark>,
+    /// Indexes of PL7 objects, in the order of the text.
+    pub indexes: Vec<Index>,
     /// Durations, as written.
     pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,
@@ -462,8 +480,8 @@ pub struct UnitModel {
     pub writes_indirectly: bool,
     /// Some instruction or statement was not understood: it may do anything.
     pub has_gaps: bool,
-    /// Some operand is a floating-point number, or some function makes or takes one.
-    pub has_floats: bool,
+    /// Somewhere a floating-point number meets a number that may not be one.
+    pub mixes_floats: bool,
 }
 
 impl UnitModel {

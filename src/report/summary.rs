@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::position::count_lines;
 use crate::lint::{Outcome, Rule, Severity, UnreadReason};
+use crate::model::entity::Family;
 
 /// The counts of a run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -35,11 +36,17 @@ pub struct Summary {
     /// PL7 projects, of which the tables are read and the code is not, and those among them without a cross-reference.
     pub projects: usize,
     pub without_reference: usize,
+    /// Families that were checked for no controller in particular, though some rule would find more for one.
+    pub untargeted: Vec<Family>,
 }
 
 impl Summary {
     pub fn of(outcome: &Outcome) -> Self {
-        let mut it = Self { internal_errors: outcome.internal_errors.len(), ..Self::default() };
+        let mut it = Self {
+            internal_errors: outcome.internal_errors.len(),
+            untargeted: outcome.untargeted.clone(),
+            ..Self::default()
+        };
         for file in &outcome.files {
             it.files += 1;
             it.entities += file.entities;
@@ -123,6 +130,16 @@ impl Summary {
                 put(&mut out, format_args!(" (not available in {})", grouped(self.without_reference)));
             }
         }
+        if !self.untargeted.is_empty() {
+            let families: Vec<&str> = self.untargeted.iter().map(|it| it.as_str()).collect();
+            put(
+                &mut out,
+                format_args!(
+                    "; no controller given for {}: only limits that all share were checked",
+                    families.join(" and ")
+                ),
+            );
+        }
         if self.internal_errors > 0 {
             let errors = count(self.internal_errors, "internal error", "internal errors");
             put(&mut out, format_args!("; {errors}"));
@@ -184,6 +201,19 @@ mod tests {
             @"2 files, 4 programs and blocks, 10 lines read in 1.23 s, 100 % understood; 2 errors, 1 warning, 1 note (1 suppressed); left out: 1 unreadable, 1 × PL7 ladder (.LD), 1 not PLC programs"
         );
         insta::assert_snapshot!(Summary::of(&empty()).line(None), @"0 files, 0 programs and blocks, 0 lines read; no findings");
+    }
+
+    #[test]
+    fn it_says_when_the_controller_is_missing() {
+        let summary =
+            |untargeted: &[Family]| Summary { untargeted: untargeted.to_vec(), ..Summary::default() }.line(None);
+        let both = summary(&[Family::Pl7, Family::Step7]);
+        assert!(
+            both.ends_with("; no controller given for PL7 and STEP 7: only limits that all share were checked"),
+            "{both}"
+        );
+        assert!(summary(&[Family::Pl7]).contains(" for PL7: "));
+        assert!(!summary(&[]).contains("controller"));
     }
 
     #[test]

@@ -79,6 +79,7 @@ pub(crate) fn sample() -> Outcome {
             Unread { path: "line1/d.png".into(), reason: UnreadReason::NotPlc },
         ],
         active: RULES.iter().collect(),
+        untargeted: Vec::new(),
         internal_errors: Vec::new(),
         elapsed: Duration::from_millis(1234),
     }

@@ -1,6 +1,6 @@
 //! A cheap cut of a text into lines that knows comments, as unit boundaries and dialect detection need it.
 
-use memchr::{memchr2, memchr3, memmem};
+use memchr::{memchr, memchr2, memchr3};
 
 /// One line of text, or several if a comment holds the breaks between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +24,6 @@ pub(super) struct Lines<'t> {
     text: &'t str,
     pos: usize,
     dialect: Comments,
-    comment_end: memmem::Finder<'static>,
 }
 
 /// Which comments a dialect has.
@@ -38,7 +37,7 @@ pub(super) enum Comments {
 
 impl<'t> Lines<'t> {
     pub(super) fn new(text: &'t str, dialect: Comments) -> Self {
-        Self { text, pos: 0, dialect, comment_end: memmem::Finder::new("*)") }
+        Self { text, pos: 0, dialect }
     }
 
     /// Goes on at an offset, outside of comments: the start of a line.
@@ -122,8 +121,8 @@ impl<'t> Iterator for Lines<'t> {
                 code = Some((first, comment.unwrap_or(stop)));
             }
             let Some(comment) = comment else { break stop };
-            match self.comment_end.find(bytes.get(comment + 2..).unwrap_or_default()) {
-                Some(length) => from = comment + 2 + length + 2,
+            match after_comment(bytes, comment + 2) {
+                Some(after) => from = after,
                 None => break bytes.len(),
             }
         };
@@ -133,21 +132,44 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
-/// The first line break or asterisk at or after `from`, and which it is. Lines are short, so that the first bytes are
-/// looked at eight at a time before a vector search, which is slow to start.
+/// The offset after the `*)` that ends the comment whose text starts at `from`.
+fn after_comment(bytes: &[u8], from: usize) -> Option<usize> {
+    let mut at = from;
+    loop {
+        at = find_any(bytes, at, [b'*'])? + 1;
+        if bytes.get(at) == Some(&b')') {
+            return Some(at + 1);
+        }
+    }
+}
+
+/// The first line break or asterisk at or after `from`, and which it is.
 fn find_break_or_asterisk(bytes: &[u8], from: usize) -> Option<(usize, u8)> {
+    let at = find_any(bytes, from, [b'\n', b'\r', b'*'])?;
+    Some((at, bytes[at]))
+}
+
+/// The first of some bytes at or after `from`. Lines are short, so that the first bytes are looked at eight at a time
+/// before a vector search, which is slow to start.
+fn find_any<const N: usize>(bytes: &[u8], from: usize, wanted: [u8; N]) -> Option<usize> {
     const SHORT: usize = 6;
     let mut at = from;
     for word in bytes.get(from..)?.chunks_exact(8).take(SHORT) {
         let word = word.try_into().map_or(0, u64::from_le_bytes);
-        let found = equal_bytes(word, b'\n') | equal_bytes(word, b'\r') | equal_bytes(word, b'*');
+        let found = wanted.iter().fold(0, |found, &byte| found | equal_bytes(word, byte));
         if found != 0 {
-            at += found.trailing_zeros() as usize / 8;
-            return Some((at, bytes[at]));
+            return Some(at + found.trailing_zeros() as usize / 8);
         }
         at += 8;
     }
-    memchr3(b'\n', b'\r', b'*', &bytes[at..]).map(|length| (at + length, bytes[at + length]))
+    let rest = bytes.get(at..)?;
+    let found = match *wanted.as_slice() {
+        [a] => memchr(a, rest),
+        [a, b] => memchr2(a, b, rest),
+        [a, b, c] => memchr3(a, b, c, rest),
+        _ => rest.iter().position(|it| wanted.contains(it)),
+    };
+    found.map(|length| at + length)
 }
 
 /// Sets the high bit of the first byte of the word, counted from the lowest, that equals `byte`. Higher bytes may be

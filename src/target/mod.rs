@@ -2,11 +2,15 @@
 //!
 //! **Invariant:** a vendor's number lives here (or on a rule's page), never in a rule's code.
 
+mod count;
 pub mod pl7;
 pub mod step7;
 
 use std::fmt;
 use std::str::FromStr;
+
+use count::Counts;
+pub use count::{Count, Counted, CountedBy, Numbered};
 
 use crate::model::entity::Family;
 
@@ -41,11 +45,14 @@ impl Range {
     }
 }
 
-/// The controller that a program is for, as far as it is known.
+/// The controller that a program is for, as far as it is known, and what the application configures on it.
+///
+/// Of an unknown controller, a figure is the one that holds for every controller of the family: the largest count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Target {
     family: Family,
     controller: Option<Controller>,
+    counts: Counts,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,8 +97,8 @@ fn key(name: &str) -> String {
 
 impl Target {
     /// A controller of the family about which nothing more is known.
-    pub const fn any(family: Family) -> Self {
-        Self { family, controller: None }
+    pub fn any(family: Family) -> Self {
+        Self { family, controller: None, counts: Counts::default() }
     }
 
     /// The PL7 processor that a project names: `TSX 57103`. One that no table has counts as one of its series.
@@ -108,11 +115,131 @@ impl Target {
     }
 
     fn pl7(processor: &'static pl7::Processor) -> Self {
-        Self { family: Family::Pl7, controller: Some(Controller::Pl7(processor)) }
+        Self { controller: Some(Controller::Pl7(processor)), ..Self::any(Family::Pl7) }
     }
 
     fn step7(cpu: &'static step7::Cpu) -> Self {
-        Self { family: Family::Step7, controller: Some(Controller::Step7(cpu)) }
+        Self { controller: Some(Controller::Step7(cpu)), ..Self::any(Family::Step7) }
+    }
+
+    /// The target with the counts that an application configures, by their key in `[objects]`.
+    pub fn with_counts(self, of: impl Fn(&str) -> Option<u32>) -> Self {
+        let counts = Counts::new(|what| {
+            let key = self.numbered(what)?.key;
+            (!key.is_empty()).then(|| of(key)).flatten()
+        });
+        Self { counts, ..self }
+    }
+
+    /// What controllers of the family count.
+    pub fn all_numbered(&self) -> &'static [Numbered] {
+        match self.family {
+            Family::Pl7 => pl7::NUMBERED,
+            Family::Step7 => step7::NUMBERED,
+        }
+    }
+
+    /// How the family calls what it counts; `None` when it has no such thing.
+    pub fn numbered(&self, what: Counted) -> Option<&'static Numbered> {
+        self.all_numbered().iter().find(|it| it.what == what)
+    }
+
+    /// How many objects of a kind a program may use: the configured number, else the most that the controller, or every
+    /// controller of the family, can have. `None` when the family has no such thing, or when nothing says where it ends.
+    pub fn count(&self, what: Counted) -> Option<Count> {
+        let numbered = self.numbered(what)?;
+        if let Some(value) = self.counts.get(what) {
+            return Some(Count { value, by: CountedBy::Configuration, source: numbered.key });
+        }
+        let (own, largest) = match self.controller {
+            Some(Controller::Pl7(it)) => (it.count(what), pl7::largest_count(what)),
+            Some(Controller::Step7(it)) => (it.count(what), step7::largest_count(what)),
+            None if self.family == Family::Pl7 => (None, pl7::largest_count(what)),
+            None => (None, step7::largest_count(what)),
+        };
+        let name = self.controller();
+        let (limit, by) = match own.zip(name) {
+            Some((limit, name)) => (limit, CountedBy::Controller(name)),
+            None => (largest?, CountedBy::Family),
+        };
+        Some(Count { value: limit.value, by, source: limit.source })
+    }
+
+    /// How many timers of both kinds there may be together, and whose limit it is; `None` where each kind has its own.
+    pub fn all_timers(&self) -> Option<Count> {
+        if self.family != Family::Pl7 {
+            return None;
+        }
+        let (limit, by) = match self.processor() {
+            Some(it) => (it.series.timers(), CountedBy::Controller(it.name)),
+            None => (pl7::TIMERS_PREMIUM, CountedBy::Family),
+        };
+        Some(Count { value: limit.value, by, source: limit.source })
+    }
+
+    /// Numbers of events, those of every controller when it is unknown; `None` where events have no numbers.
+    pub fn events(&self) -> Option<Range> {
+        match self.family {
+            Family::Pl7 => self.processor().and_then(|it| it.events).or(pl7::EVENTS_LARGEST),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Numbers of subroutines that the language has; `None` where they are blocks.
+    pub const fn subroutines(&self) -> Option<Range> {
+        match self.family {
+            Family::Pl7 => Some(pl7::SUBROUTINES),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Number of a subroutine above which no tool takes one.
+    pub const fn last_subroutine(&self) -> Option<Limit> {
+        match self.family {
+            Family::Pl7 => Some(pl7::SUBROUTINE_LAST_IN_EDITOR),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Longest name of a section: what the language allows, and what the program editor takes.
+    pub const fn section_name_length(&self) -> Option<(Limit, Limit)> {
+        match self.family {
+            Family::Pl7 => Some((pl7::SECTION_NAME_LENGTH, pl7::SECTION_NAME_LENGTH_IN_EDITOR)),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Preset of a timer, counter or monostable.
+    pub const fn preset(&self, what: Counted) -> Option<Range> {
+        match (self.family, what) {
+            (Family::Pl7, Counted::Timers | Counted::OldTimers | Counted::Counters | Counted::Monostables) => {
+                Some(pl7::PRESETS)
+            }
+            (Family::Step7, Counted::Counters) => Some(step7::COUNTER_PRESETS),
+            _ => None,
+        }
+    }
+
+    /// Whether an index may be a constant word or an immediate value, as it may on some controller when it is unknown.
+    pub fn has_constant_index(&self) -> bool {
+        self.family == Family::Pl7 && self.processor().is_none_or(|it| it.series.has_constant_index())
+    }
+
+    /// Lines of a rung, the most that any controller has when it is unknown.
+    pub fn ladder_lines(&self) -> Option<Limit> {
+        let series = self.processor().map_or(pl7::Series::Premium, |it| it.series);
+        (self.family == Family::Pl7).then(|| series.ladder_lines())
+    }
+
+    /// What a chart may have at most.
+    pub fn chart(&self) -> Option<pl7::ChartLimits> {
+        let largest = (self.family == Family::Pl7).then_some(pl7::CHART_LARGEST);
+        self.processor().map(|it| it.chart_max).or(largest)
+    }
+
+    /// What one event may exchange; `None` when the controller is unknown: the series count differently.
+    pub fn exchanges(&self) -> Option<pl7::Exchanges> {
+        self.processor().map(|it| it.exchanges)
     }
 
     pub const fn family(&self) -> Family {
@@ -208,11 +335,8 @@ impl Target {
         if self.family != Family::Pl7 {
             return None;
         }
-        let row = pl7::BLOCK_COUNTS.iter().find(|it| it.symbol == symbol)?;
-        Some(match self.processor().map(|it| it.series) {
-            Some(pl7::Series::Micro) => row.micro,
-            Some(pl7::Series::Premium) | None => row.premium,
-        })
+        let what = pl7::BLOCK_COUNTS.iter().find(|it| it.symbol == symbol)?.what;
+        self.processor().map_or_else(|| pl7::largest_count(what), |it| it.count(what))
     }
 }
 
@@ -284,5 +408,85 @@ mod tests {
         assert_eq!(counts(premium), [255; 6]);
         assert_eq!(counts(Target::any(Family::Pl7)), [255; 6]);
         assert_eq!((micro.block_count("X"), target("CPU 314").block_count("T")), (None, None));
+    }
+
+    #[test]
+    fn the_most_that_there_is() {
+        use Counted::*;
+
+        let count = |target: Target, what| target.count(what).map(|it| (it.value, it.source));
+        let any = Target::any(Family::Pl7);
+        assert_eq!(count(any, Bits), Some((32_634, "PL7:1691")));
+        assert_eq!(count(any, Words), Some((31_232, "PL7:1705")));
+        assert_eq!(count(any, Steps), Some((250, "PL7:4279")));
+        assert_eq!(count(any, MacroSteps), Some((64, "PL7:4280")));
+        assert_eq!(count(any, SystemBits).map(|it| it.0), Some(128));
+        assert_eq!((count(any, Constants), count(any, Bytes)), (None, None));
+        assert_eq!(count(any, Drums), Some((255, "PL7:990")));
+        assert_eq!(count(target("TSX 37-10"), Words), Some((14_336, "PL7:1534")));
+        assert_eq!(count(target("TSX 37-05"), Words), Some((9216, "PL7:1534")));
+        assert_eq!(count(target("TSX 37-22"), Words), Some((17_920, "PL7:1560")));
+        assert_eq!(count(target("TSX 57-103"), Words), Some((26_624, "PL7:1609")));
+        assert_eq!(count(target("TSX 37-22"), MacroSteps), Some((0, "PL7:4280")));
+        assert_eq!(count(target("TSX 37-22"), Registers), Some((4, "PL7:986")));
+        // Its memory is in no table: no controller has more than the largest.
+        let unknown = target("PCX 57-1012").count(Bits).unwrap();
+        assert_eq!((unknown.value, unknown.by), (32_634, CountedBy::Family));
+        let known = target("TSX 57-153").count(Bits).unwrap();
+        assert_eq!((known.value, known.by), (3962, CountedBy::Controller("TSX 57-153")));
+        let step7 = Target::any(Family::Step7);
+        assert_eq!([Bytes, Timers, Counters].map(|it| count(step7, it).map(|it| it.0)), [16_384, 2048, 2048].map(Some));
+        let cpu = target("CPU 314");
+        assert_eq!((count(cpu, Timers), count(cpu, Counters)), (Some((256, "S7:477")), Some((256, "S7:591"))));
+        assert_eq!((count(step7, Words), count(step7, Steps)), (None, None));
+    }
+
+    #[test]
+    fn what_every_controller_of_the_family_has_is_never_less_than_what_one_has() {
+        for name in Target::known() {
+            let one = target(name);
+            let any = Target::any(one.family());
+            for it in one.all_numbered() {
+                let (one, any) = (one.count(it.what), any.count(it.what));
+                assert!(one.map(|it| it.value) <= any.map(|it| it.value), "{name}: {}", it.plural);
+            }
+            assert!(one.events().map(|it| it.last) <= any.events().map(|it| it.last));
+            assert!(one.chart().map(|it| it.all_steps.value) <= any.chart().map(|it| it.all_steps.value));
+        }
+    }
+
+    #[test]
+    fn configured_counts_come_first() {
+        let target = target("TSX 37-22").with_counts(|key| (key == "MW").then_some(100));
+        let words = Count { value: 100, by: CountedBy::Configuration, source: "MW" };
+        assert_eq!(target.count(Counted::Words), Some(words));
+        assert_eq!(target.count(Counted::Bits).map(|it| it.value), Some(256));
+        // The number of system bits is not configured.
+        let all = Target::any(Family::Pl7).with_counts(|_| Some(1));
+        assert_eq!(all.count(Counted::SystemBits).map(|it| it.value), Some(128));
+        assert_eq!(all.count(Counted::Constants).map(|it| it.value), Some(1));
+    }
+
+    #[test]
+    fn events_timers_indexes_and_presets() {
+        let events = |target: Target| target.events().map(|it| (it.first, it.last, it.source));
+        assert_eq!(events(target("TSX 37-08")), Some((1, 8, "PL7:2060")));
+        assert_eq!(events(target("TSX 37-21")), Some((0, 15, "PL7:2061")));
+        assert_eq!(events(target("PCX 57-1012")), Some((0, 31, "PL7:2062")));
+        assert_eq!(events(Target::any(Family::Pl7)), Some((0, 63, "PL7:2063")));
+        assert_eq!(events(Target::any(Family::Step7)), None);
+        let timers = |target: Target| target.all_timers().map(|it| it.value);
+        assert_eq!((timers(target("TSX 37-10")), timers(Target::any(Family::Pl7))), (Some(64), Some(255)));
+        assert_eq!(timers(target("CPU 314")), None);
+        assert!(Target::any(Family::Pl7).has_constant_index() && !target("TSX 37").has_constant_index());
+        assert!(!target("CPU 314").has_constant_index());
+        let preset = |target: Target, what| target.preset(what).map(|it| it.last);
+        let pl7 = Target::any(Family::Pl7);
+        assert_eq!((preset(pl7, Counted::Monostables), preset(pl7, Counted::Drums)), (Some(9999), None));
+        let step7 = Target::any(Family::Step7);
+        assert_eq!((preset(step7, Counted::Counters), preset(step7, Counted::Timers)), (Some(999), None));
+        let lines = |target: Target| target.ladder_lines().map(|it| it.value);
+        assert_eq!((lines(pl7), lines(target("TSX 37-22")), lines(step7)), (Some(16), Some(7), None));
+        assert_eq!((pl7.exchanges(), step7.chart()), (None, None));
     }
 }

@@ -1,6 +1,10 @@
 //! TSX Micro and Premium, programmed with PL7.
 
-use super::{Limit, Range};
+mod memory;
+
+pub use memory::Memory;
+
+use super::{Counted, Limit, Numbered, Range};
 
 /// Labels `%Li`.
 pub const LABELS: Range = Range::new(0, 999, "PL7:2676");
@@ -24,6 +28,18 @@ pub const FAST_PERIOD_MS: Range = Range::new(1, 255, "PL7:2023");
 /// Timers `%TM` and `%T` together.
 pub const TIMERS_MICRO: Limit = Limit::new(64, "PL7:999");
 pub const TIMERS_PREMIUM: Limit = Limit::new(255, "PL7:999");
+/// Priorities among events: of the smaller Micros, and of all others, where EVT0 comes before the rest.
+pub const EVENT_LEVELS_37_10: Limit = Limit::new(1, "PL7:2113");
+pub const EVENT_LEVELS: Limit = Limit::new(2, "PL7:2117");
+/// Inputs of the module in position 1 of a Micro that can raise events.
+pub const EVENT_INPUTS_MICRO: Range = Range::new(0, 3, "PL7:2079");
+/// Discrete channels that are exchanged together (also PL7:2502).
+pub const DISCRETE_GROUP: Limit = Limit::new(8, "PL7:2419");
+/// Analog outputs of a Micro, and channels of analog modules of a Premium that are not isolated, that are exchanged together.
+pub const ANALOG_OUTPUT_GROUP_MICRO: Limit = Limit::new(2, "PL7:2441");
+pub const ANALOG_GROUP_PREMIUM: Limit = Limit::new(4, "PL7:2448");
+/// Power failures below this many milliseconds pass unseen: of an alternating and of a direct supply (also PL7:1778).
+pub const UNSEEN_POWER_FAILURE_MS: (Limit, Limit) = (Limit::new(10, "PL7:1761"), Limit::new(1, "PL7:1761"));
 /// Times of steps, in units of 100 ms.
 pub const STEP_TIMES: Range = Range::new(0, 9999, "PL7:4248");
 /// Only these system words can be a table.
@@ -33,13 +49,159 @@ pub const TRANSITIONS: Limit = Limit::new(1024, "PL7:4190");
 pub const AND_CONVERGENCES: Limit = Limit::new(64, "PL7:4286");
 /// Branches of one divergence or convergence.
 pub const BRANCHES: Limit = Limit::new(11, "PL7:4191-4196");
-/// Characters of a symbol.
-pub const SYMBOL_LENGTH: Limit = Limit::new(32, "PL7:1198");
-/// Characters of the comment of a symbol, and of a section (also PL7:2007: subroutine).
-pub const SYMBOL_COMMENT: Limit = Limit::new(508, "PL7:1222");
-pub const MODULE_COMMENT: Limit = Limit::new(250, "PL7:1985");
 /// Columns of a rung.
 pub const LADDER_COLUMNS: Limit = Limit::new(11, "PL7:2660");
+/// Pages of the chart, and of each macro-step.
+pub const CHART_PAGES: Limit = Limit::new(8, "PL7:4265");
+/// Macro-steps `%XMj`.
+pub const MACRO_STEPS: Range = Range::new(0, 63, "PL7:4215");
+
+/// A preset of a timer, counter or monostable. Volume 1 tells only which presets a program may write (PL7:977-995).
+pub const PRESETS: Range = Range::new(0, 9999, "the vendor's general documentation; PL72:668, 748 for PL7-2");
+
+/// Bits that the memory of bits holds: of a Micro (also PL7:1421, 1520), and of a Premium within its words.
+pub const BIT_MEMORY_MICRO: Limit = Limit::new(1280, "PL7:1332");
+pub const BIT_MEMORY_PREMIUM: Limit = Limit::new(4096, "PL7:1384");
+/// Words `%MW` that the Flash memory of a Micro can keep.
+pub const SAVED_WORDS_MICRO: Limit = Limit::new(1000, "PL7:1353");
+/// K words of program that it can keep, of the smaller and the larger processors (also PL7:1374).
+pub const SAVED_PROGRAM_MICRO: (Limit, Limit) = (Limit::new(9, "PL7:1352"), Limit::new(15, "PL7:1352"));
+/// The same with a memory cartridge, where it keeps words alone.
+pub const FLASH_MICRO: (Limit, Limit) = (Limit::new(10, "PL7:1365"), Limit::new(16, "PL7:1365"));
+/// K words of RAM that the system of a Premium takes at least.
+pub const SYSTEM_MEMORY_PREMIUM: Limit = Limit::new(5, "PL7:1390");
+
+// Parts of addresses. Positions and racks are the processor's.
+
+/// Channels of a module, and ranks of a channel, in the rack of a Micro.
+pub const CHANNELS_MICRO: Range = Range::new(0, 31, "PL7:678");
+pub const RANKS_MICRO: Range = Range::new(0, 127, "PL7:679");
+/// Channels of a module, and ranks of a channel, in a rack of a Premium.
+pub const CHANNELS: Range = Range::new(0, 127, "PL7:755");
+pub const RANKS: Range = Range::new(0, 127, "PL7:756");
+/// Position of the processor whose FIPIO link an address names, and the channel of that link.
+pub const FIPIO_POSITIONS: Range = Range::new(0, 1, "PL7:806");
+pub const FIPIO_LINK: Range = Range::new(2, 2, "PL7:807");
+pub const FIPIO_POINTS: Range = Range::new(1, 127, "PL7:808");
+/// Base module and extension.
+pub const FIPIO_MODULES: Range = Range::new(0, 1, "PL7:809");
+pub const FIPIO_CHANNELS: Range = Range::new(0, 127, "PL7:810");
+pub const FIPIO_RANKS: Range = Range::new(0, 255, "PL7:811");
+pub const ASI_CHANNELS: Range = Range::new(0, 0, "PL7:852");
+pub const ASI_SLAVES: Range = Range::new(0, 31, "PL7:853");
+pub const ASI_RANKS: Range = Range::new(0, 3, "PL7:854");
+pub const NETWORKS: Range = Range::new(0, 127, "PL7:912");
+pub const NETWORK_STATIONS: Range = Range::new(0, 31, "PL7:912");
+pub const NETWORK_WORDS: Range = Range::new(0, 3, "PL7:912");
+/// Bits that can be extracted from a word.
+pub const WORD_BITS: Range = Range::new(0, 15, "PL7:631");
+
+// Lengths, in characters.
+
+pub const SYMBOL_LENGTH: Limit = Limit::new(32, "PL7:1198");
+/// Of a symbol that a module gives its objects: what the user chooses, and what the module appends.
+pub const PRESYMBOL_PREFIX_LENGTH: Limit = Limit::new(12, "PL7:1275");
+pub const PRESYMBOL_SUFFIX_LENGTH: Limit = Limit::new(20, "PL7:1276");
+pub const SYMBOL_COMMENT_LENGTH: Limit = Limit::new(508, "PL7:1222");
+pub const SECTION_NAME_LENGTH: Limit = Limit::new(24, "PL7:1979");
+/// The program editor takes fewer characters than [`SECTION_NAME_LENGTH`].
+pub const SECTION_NAME_LENGTH_IN_EDITOR: Limit = Limit::new(16, "the vendor's general documentation");
+pub const SECTION_COMMENT_LENGTH: Limit = Limit::new(250, "PL7:1985");
+pub const SUBROUTINE_COMMENT_LENGTH: Limit = Limit::new(250, "PL7:2007");
+/// Short and long name of a functional module.
+pub const MODULE_SHORT_NAME_LENGTH: Limit = Limit::new(8, "PL7:2533");
+pub const MODULE_LONG_NAME_LENGTH: Limit = Limit::new(16, "PL7:2534");
+pub const RUNG_COMMENT_LENGTH: Limit = Limit::new(222, "PL7:2695");
+pub const IL_COMMENT_LENGTH: Limit = Limit::new(222, "PL7:3032");
+pub const IL_COMMENT_LINES: Limit = Limit::new(3, "PL7:3032");
+pub const ST_COMMENT_LENGTH: Limit = Limit::new(256, "PL7:3548");
+pub const CHART_COMMENT_LENGTH: Limit = Limit::new(64, "PL7:4466");
+/// Name of an instance of a DFB (also PL7:5446).
+pub const INSTANCE_NAME_LENGTH: Limit = Limit::new(32, "PL7:1253");
+/// Name of a parameter or variable of a DFB (also PL7:1254, 5448).
+pub const DFB_ITEM_NAME_LENGTH: Limit = Limit::new(8, "PL7:5371");
+pub const DFB_ITEM_COMMENT_LENGTH: Limit = Limit::new(80, "PL7:5373");
+
+// Interface of a DFB type, which only a Premium has (PL7:5304).
+
+pub const DFB_INPUTS: Limit = Limit::new(15, "PL7:5412");
+pub const DFB_OUTPUTS: Limit = Limit::new(15, "PL7:5413");
+pub const DFB_IN_OUTS: Limit = Limit::new(15, "PL7:5414");
+/// Inputs and in/outs together.
+pub const DFB_INPUTS_AND_IN_OUTS: Limit = Limit::new(15, "PL7:5418");
+/// Outputs and in/outs together.
+pub const DFB_OUTPUTS_AND_IN_OUTS: Limit = Limit::new(15, "PL7:5419");
+pub const DFB_PUBLIC_VARIABLES: Limit = Limit::new(100, "PL7:5435");
+pub const DFB_PRIVATE_VARIABLES: Limit = Limit::new(100, "PL7:5436");
+/// Boolean inputs, at least.
+pub const DFB_BOOLEAN_INPUTS: Limit = Limit::new(1, "PL7:5423");
+
+/// What has a number and is counted. Numbers start at 0, and how many there are is set when the application is
+/// configured (PL7:622, 895, 1498-1499), but for the system bits.
+pub static NUMBERED: &[Numbered] = &[
+    Numbered { what: Counted::Bits, key: "M", prefix: "%M", plural: "internal bits" },
+    Numbered { what: Counted::Words, key: "MW", prefix: "%MW", plural: "internal words" },
+    Numbered { what: Counted::Constants, key: "KW", prefix: "%KW", plural: "constant words" },
+    Numbered { what: Counted::SystemBits, key: "", prefix: "%S", plural: "system bits" },
+    Numbered { what: Counted::Steps, key: "X", prefix: "%X", plural: "steps of the main chart" },
+    Numbered { what: Counted::MacroSteps, key: "XM", prefix: "%XM", plural: "macro-steps" },
+    Numbered { what: Counted::Timers, key: "TM", prefix: "%TM", plural: "timers" },
+    Numbered { what: Counted::OldTimers, key: "T", prefix: "%T", plural: "series-7 timers" },
+    Numbered { what: Counted::Counters, key: "C", prefix: "%C", plural: "counters" },
+    Numbered { what: Counted::Monostables, key: "MN", prefix: "%MN", plural: "monostables" },
+    Numbered { what: Counted::Registers, key: "R", prefix: "%R", plural: "registers" },
+    Numbered { what: Counted::Drums, key: "DR", prefix: "%DR", plural: "drum controllers" },
+];
+
+/// Channels of a standard module of a Micro, which takes two positions (PL7:700-710): of the lower and of the upper one.
+/// A module of half that size takes one.
+#[derive(Debug, PartialEq, Eq)]
+pub struct MicroModule {
+    pub name: &'static str,
+    pub lower: Channels,
+    pub upper: Option<Channels>,
+}
+
+/// The first channel is 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channels {
+    Inputs(u32),
+    Outputs(u32),
+}
+
+/// PL7:701-710. The columns of standard modules are told apart by what their names say.
+pub static MICRO_MODULES: &[MicroModule] = &[
+    MicroModule { name: "4S", lower: Channels::Outputs(4), upper: None },
+    MicroModule { name: "8E", lower: Channels::Inputs(8), upper: None },
+    MicroModule { name: "12E", lower: Channels::Inputs(12), upper: None },
+    MicroModule { name: "28E/S", lower: Channels::Inputs(16), upper: Some(Channels::Outputs(12)) },
+    MicroModule { name: "32E", lower: Channels::Inputs(16), upper: Some(Channels::Inputs(16)) },
+    MicroModule { name: "32S", lower: Channels::Outputs(16), upper: Some(Channels::Outputs(16)) },
+    MicroModule { name: "64E/S", lower: Channels::Inputs(32), upper: Some(Channels::Outputs(32)) },
+];
+
+/// How much an event may exchange.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exchanges {
+    /// Modules before the event, and modules after it.
+    Modules { inputs: Limit, outputs: Limit },
+    /// Exchanges: groups of 8 discrete channels (PL7:2502), channels of analog and of other modules (PL7:2504).
+    Channels { discrete: Limit, analog: Limit, other: Limit },
+}
+
+const EXCHANGES_MICRO: Exchanges =
+    Exchanges::Modules { inputs: Limit::new(2, "PL7:2491"), outputs: Limit::new(2, "PL7:2491") };
+
+const fn exchanges(discrete: u32, analog: u32, other: u32) -> Exchanges {
+    Exchanges::Channels {
+        discrete: Limit::new(discrete, "PL7:2498"),
+        analog: Limit::new(analog, "PL7:2499"),
+        other: Limit::new(other, "PL7:2500"),
+    }
+}
+
+const EXCHANGES_57_1: Exchanges = exchanges(32, 8, 4);
+const EXCHANGES_57_2: Exchanges = exchanges(128, 16, 16);
 
 /// The two series of controllers that the manual tells apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -82,15 +244,22 @@ impl Series {
 #[derive(Debug, PartialEq, Eq)]
 pub struct BlockCount {
     pub symbol: &'static str,
+    pub what: Counted,
     pub micro: Limit,
     pub premium: Limit,
     /// On a Premium unless configured.
     pub premium_default: Limit,
 }
 
-const fn block(symbol: &'static str, source: &'static str, micro: u32, premium: u32, default: u32) -> BlockCount {
+const fn block(
+    symbol: &'static str,
+    what: Counted,
+    source: &'static str,
+    [micro, premium, default]: [u32; 3],
+) -> BlockCount {
     BlockCount {
         symbol,
+        what,
         micro: Limit::new(micro, source),
         premium: Limit::new(premium, source),
         premium_default: Limit::new(default, source),
@@ -99,12 +268,12 @@ const fn block(symbol: &'static str, source: &'static str, micro: u32, premium: 
 
 /// PL7:975-997.
 pub static BLOCK_COUNTS: &[BlockCount] = &[
-    block("TM", "PL7:976", 64, 255, 128),
-    block("C", "PL7:979", 32, 255, 64),
-    block("MN", "PL7:983", 8, 255, 32),
-    block("R", "PL7:986", 4, 255, 4),
-    block("DR", "PL7:990", 8, 255, 8),
-    block("T", "PL7:994", 64, 255, 0),
+    block("TM", Counted::Timers, "PL7:976", [64, 255, 128]),
+    block("C", Counted::Counters, "PL7:979", [32, 255, 64]),
+    block("MN", Counted::Monostables, "PL7:983", [8, 255, 32]),
+    block("R", Counted::Registers, "PL7:986", [4, 255, 4]),
+    block("DR", Counted::Drums, "PL7:990", [8, 255, 8]),
+    block("T", Counted::OldTimers, "PL7:994", [64, 255, 0]),
 ];
 
 /// What a chart may have (PL7:4277-4284).
@@ -149,6 +318,8 @@ pub struct Processor {
     pub internal_words_default: Option<Limit>,
     /// `%MW` with the cartridge that gives most.
     pub internal_words: Option<Limit>,
+    /// Without a cartridge, and with each that it takes; empty where the manual does not tell.
+    pub memory: &'static [Memory],
     /// Bits of steps, those of macro-steps included.
     pub step_bits: Option<Limit>,
     pub chart_default: ChartLimits,
@@ -159,12 +330,15 @@ pub struct Processor {
     pub racks: Option<Range>,
     /// Events `EVTi`.
     pub events: Option<Range>,
+    /// What one event may exchange.
+    pub exchanges: Exchanges,
 }
 
 /// Figures of the Micro models that share a column of the tables.
 struct Micro {
     source_words: &'static str,
     words: Option<Limit>,
+    memory: &'static [Memory],
     steps: u32,
     chart: (ChartLimits, ChartLimits),
     positions: u32,
@@ -179,30 +353,36 @@ const fn micro(name: &'static str, it: Micro) -> Processor {
         internal_bits: Some(Limit::new(256, "PL7:1523")),
         internal_words_default: Some(Limit::new(512, it.source_words)),
         internal_words: it.words,
+        memory: it.memory,
         step_bits: Some(Limit::new(it.steps, "PL7:1524")),
         chart_default: it.chart.0,
         chart_max: it.chart.1,
         positions: Range::new(0, it.positions, "PL7:677"),
         racks: None,
         events: Some(it.events),
+        exchanges: EXCHANGES_MICRO,
     }
 }
 
 /// TSX 37-05, 37-08 and 37-10 take no cartridge that gives words (PL7:1532-1535).
-const MICRO_10: Micro = Micro {
-    source_words: "PL7:1535",
-    words: None,
-    steps: 96,
-    chart: CHART_37_10,
-    positions: 8,
-    events: Range::new(1, 8, "PL7:2060"),
-};
+const fn micro_10(memory: &'static [Memory]) -> Micro {
+    Micro {
+        source_words: "PL7:1535",
+        words: None,
+        memory,
+        steps: 96,
+        chart: CHART_37_10,
+        positions: 8,
+        events: Range::new(1, 8, "PL7:2060"),
+    }
+}
 
-const fn micro_20(source_words: &'static str) -> Micro {
+const fn micro_20(source_words: &'static str, memory: &'static [Memory]) -> Micro {
     Micro {
         source_words,
         // 17.5 K words.
         words: Some(Limit::new(17_920, source_words)),
+        memory,
         steps: 128,
         chart: CHART_37_20,
         positions: 10,
@@ -215,9 +395,11 @@ struct Premium {
     bits: Option<Limit>,
     words_default: Option<Limit>,
     words: Option<Limit>,
+    memory: &'static [Memory],
     step_bits: Option<Limit>,
     last_rack: u32,
     events: Option<Range>,
+    exchanges: Exchanges,
 }
 
 const fn premium(name: &'static str, it: Premium) -> Processor {
@@ -228,14 +410,21 @@ const fn premium(name: &'static str, it: Premium) -> Processor {
         internal_bits: it.bits,
         internal_words_default: it.words_default,
         internal_words: it.words,
+        memory: it.memory,
         step_bits: it.step_bits,
         chart_default: CHART_57.0,
         chart_max: CHART_57.1,
         positions: Range::new(0, 14, "PL7:750"),
         racks: Some(Range::new(0, it.last_rack, "PL7:749")),
         events: it.events,
+        exchanges: it.exchanges,
     }
 }
+
+/// The events that some processor has.
+pub const EVENTS_LARGEST: Option<Range> = EVENTS_57_2;
+/// The largest chart.
+pub const CHART_LARGEST: ChartLimits = CHART_57.1;
 
 const EVENTS_57_1: Option<Range> = Some(Range::new(0, 31, "PL7:2062"));
 const EVENTS_57_2: Option<Range> = Some(Range::new(0, 63, "PL7:2063"));
@@ -251,74 +440,141 @@ const PREMIUM_1: Premium = Premium {
     words_default: Some(Limit::new(512, "PL7:1609")),
     // 26 K words.
     words: Some(Limit::new(26_624, "PL7:1609")),
+    memory: memory::TSX_57_1,
     step_bits: Some(Limit::new(1024, "PL7:1594")),
     last_rack: 1,
     events: EVENTS_57_1,
+    exchanges: EXCHANGES_57_1,
 };
 
-const fn premium_2(bits: u32) -> Premium {
+const fn premium_2(bits: u32, memory: &'static [Memory]) -> Premium {
     Premium {
         bits: Some(Limit::new(bits, "PL7:1593")),
         words_default: Some(Limit::new(1024, "PL7:1609")),
         words: words_30("PL7:1609"),
+        memory,
         step_bits: Some(Limit::new(1024, "PL7:1594")),
         last_rack: 7,
         events: EVENTS_57_2,
+        exchanges: EXCHANGES_57_2,
     }
 }
 
-const PREMIUM_3: Premium = Premium {
-    bits: Some(Limit::new(16_250, "PL7:1642")),
-    words_default: Some(Limit::new(1024, "PL7:1654")),
-    words: words_30("PL7:1654"),
-    step_bits: Some(Limit::new(1024, "PL7:1643")),
-    last_rack: 7,
-    events: EVENTS_57_2,
-};
+const fn premium_3(memory: &'static [Memory]) -> Premium {
+    Premium {
+        bits: Some(Limit::new(16_250, "PL7:1642")),
+        words_default: Some(Limit::new(1024, "PL7:1654")),
+        words: words_30("PL7:1654"),
+        memory,
+        step_bits: Some(Limit::new(1024, "PL7:1643")),
+        last_rack: 7,
+        events: EVENTS_57_2,
+        exchanges: EXCHANGES_57_2,
+    }
+}
 
 const PREMIUM_4: Premium = Premium {
     bits: Some(Limit::new(32_634, "PL7:1691")),
     words_default: Some(Limit::new(1024, "PL7:1705")),
     words: words_30("PL7:1705"),
+    memory: memory::TSX_57_4,
     step_bits: Some(Limit::new(1024, "PL7:1692")),
     last_rack: 7,
     events: EVENTS_57_2,
+    exchanges: EXCHANGES_57_2,
 };
 
 /// Named for its racks alone (PL7:749); its memory is in no table.
-const PREMIUM_102: Premium =
-    Premium { bits: None, words_default: None, words: None, step_bits: None, last_rack: 1, events: EVENTS_57_1 };
+const PREMIUM_102: Premium = Premium {
+    bits: None,
+    words_default: None,
+    words: None,
+    memory: &[],
+    step_bits: None,
+    last_rack: 1,
+    events: EVENTS_57_1,
+    exchanges: EXCHANGES_57_1,
+};
 
 /// A Premium of which nothing more is said: the largest figures.
 const PREMIUM_ANY: Premium = PREMIUM_4;
 
-/// Every processor that the manual names, and the two series for a program whose processor is not known.
+/// Every processor that the manual names, the families that its headings name (PL7:1582, 1633, 1680), and the series for a
+/// program whose processor is not known.
 pub static PROCESSORS: &[Processor] = &[
-    micro("TSX 37-05", MICRO_10),
-    micro("TSX 37-08", MICRO_10),
-    micro("TSX 37-10", MICRO_10),
-    micro("TSX 37-21", micro_20("PL7:1535")),
-    micro("TSX 37-22", micro_20("PL7:1560")),
+    micro("TSX 37-05", micro_10(memory::TSX_37_05)),
+    micro("TSX 37-08", micro_10(memory::TSX_37_05)),
+    micro("TSX 37-10", micro_10(memory::TSX_37_10)),
+    // Named for its charts alone (PL7:4277), which the TSX 37-21 and 37-22 share with it.
+    micro("TSX 37-20", micro_20("PL7:1535", memory::TSX_37_21)),
+    micro("TSX 37-21", micro_20("PL7:1535", memory::TSX_37_21)),
+    micro("TSX 37-22", micro_20("PL7:1560", memory::TSX_37_22)),
+    premium("TSX 57-10", PREMIUM_1),
     premium("TSX 57-102", PREMIUM_102),
     premium("PMX 57-102", PREMIUM_102),
     premium("PCX 57-1012", PREMIUM_102),
     premium("TSX 57-103", PREMIUM_1),
+    premium("TSX 57-15", PREMIUM_1),
     premium("TSX 57-153", PREMIUM_1),
-    premium("TSX 57-203", premium_2(8056)),
-    premium("TSX 57-253", premium_2(8056)),
-    premium("TSX 57-2623", premium_2(8056)),
-    premium("TSX 57-2823", premium_2(8056)),
+    premium("TSX 57-20", premium_2(8056, memory::TSX_57_203)),
+    premium("TSX 57-203", premium_2(8056, memory::TSX_57_203)),
+    premium("TSX 57-25", premium_2(8056, memory::TSX_57_253)),
+    premium("TSX 57-253", premium_2(8056, memory::TSX_57_253)),
+    premium("TSX 57-26", premium_2(8056, memory::TSX_57_203)),
+    premium("TSX 57-2623", premium_2(8056, memory::TSX_57_203)),
+    premium("TSX 57-28", premium_2(8056, memory::TSX_57_253)),
+    premium("TSX 57-2823", premium_2(8056, memory::TSX_57_253)),
     // PL7:1590 puts it with the bits of the TSX 57-103, PL7:1606 with the words of the TSX 57-203.
-    premium("PCX 57-203", premium_2(3962)),
-    premium("TSX 57-303", PREMIUM_3),
-    premium("TSX 57-353", PREMIUM_3),
-    premium("TSX 57-3623", PREMIUM_3),
-    premium("PCX 57-353", PREMIUM_3),
+    premium("PCX 57-203", premium_2(3962, memory::TSX_57_203)),
+    premium("TSX 57-30", premium_3(memory::TSX_57_303)),
+    premium("TSX 57-303", premium_3(memory::TSX_57_303)),
+    premium("TSX 57-35", premium_3(memory::TSX_57_353)),
+    premium("TSX 57-353", premium_3(memory::TSX_57_353)),
+    premium("TSX 57-36", premium_3(memory::TSX_57_303)),
+    premium("TSX 57-3623", premium_3(memory::TSX_57_303)),
+    premium("PCX 57-353", premium_3(memory::TSX_57_353)),
     premium("TSX 57-453", PREMIUM_4),
     premium("TSX 57-4823", PREMIUM_4),
-    micro("TSX 37", micro_20("PL7:1535")),
+    micro("TSX 37", micro_20("PL7:1535", memory::TSX_37_21)),
     premium("TSX 57", PREMIUM_ANY),
+    premium("PMX 57", PREMIUM_ANY),
+    premium("PCX 57", PREMIUM_ANY),
 ];
+
+impl Processor {
+    /// How many of something the processor can have at most; `None` where the manual gives no end.
+    pub fn count(&self, what: Counted) -> Option<Limit> {
+        match what {
+            Counted::Bits => self.internal_bits,
+            // Data lies in the RAM of the processor (PL7:1344, 1403): where the table gives a default alone, that is the end.
+            Counted::Words => self.internal_words.or_else(|| {
+                let ram = self.memory.iter().map(|it| it.ram).max()?;
+                Some(Limit::new(ram * 1024, "PL7:1534"))
+            }),
+            Counted::SystemBits => Some(self.system_bits),
+            Counted::Steps => Some(self.chart_max.main_steps),
+            Counted::MacroSteps => Some(self.chart_max.macro_steps),
+            Counted::Constants | Counted::Bytes => None,
+            Counted::Timers
+            | Counted::OldTimers
+            | Counted::Counters
+            | Counted::Monostables
+            | Counted::Registers
+            | Counted::Drums => {
+                let row = BLOCK_COUNTS.iter().find(|it| it.what == what)?;
+                Some(match self.series {
+                    Series::Micro => row.micro,
+                    Series::Premium => row.premium,
+                })
+            }
+        }
+    }
+}
+
+/// The most that any processor has of something.
+pub fn largest_count(what: Counted) -> Option<Limit> {
+    PROCESSORS.iter().filter_map(|it| it.count(what)).max_by_key(|it| it.value)
+}
 
 #[cfg(test)]
 mod tests {
@@ -383,6 +639,59 @@ mod tests {
         }
         for it in BLOCK_COUNTS {
             assert!(it.premium_default.value <= it.premium.value, "{}", it.symbol);
+        }
+    }
+
+    #[test]
+    fn exchanges_of_an_event() {
+        let channels = |name| match processor(name).exchanges {
+            Exchanges::Channels { discrete, analog, other } => [discrete, analog, other].map(|it| it.value),
+            Exchanges::Modules { .. } => panic!("{name}"),
+        };
+        assert_eq!(channels("TSX 57-153"), [32, 8, 4]);
+        assert_eq!(channels("TSX 57-203"), [128, 16, 16]);
+        assert_eq!(channels("TSX 57-4823"), [128, 16, 16]);
+        let micro = Exchanges::Modules { inputs: Limit::new(2, "PL7:2491"), outputs: Limit::new(2, "PL7:2491") };
+        assert_eq!(processor("TSX 37-05").exchanges, micro);
+    }
+
+    #[test]
+    fn each_processor_has_its_columns() {
+        let cells = |name| {
+            let last = processor(name).memory.last().unwrap_or_else(|| panic!("{name}"));
+            (processor(name).memory.len(), last.cartridge, last.ram, last.words, last.constants)
+        };
+        assert_eq!(cells("TSX 37-08"), (1, None, 9, 512, 128));
+        assert_eq!(cells("TSX 37-22"), (4, Some(128), 148, 17_920, 512));
+        assert_eq!(cells("TSX 57-103"), (3, Some(64), 32, 26_624, 512));
+        assert_eq!(cells("TSX 57-2823"), (4, Some(128), 64, 31_232, 512));
+        assert_eq!(cells("PCX 57-203"), (4, Some(128), 48, 31_232, 512));
+        assert_eq!(cells("TSX 57-3623"), (6, Some(384), 80, 31_232, 1024));
+        assert_eq!(cells("PCX 57-353"), (6, Some(384), 96, 31_232, 1024));
+        assert_eq!(cells("TSX 57-453"), (8, Some(960), 176, 31_232, 1024));
+        assert!(processor("TSX 57-102").memory.is_empty());
+        for it in PROCESSORS.iter().filter(|it| !it.memory.is_empty()) {
+            let words = it.memory.iter().map(|it| it.words).max();
+            let most = it.internal_words.or(it.internal_words_default).map(|it| it.value);
+            assert_eq!(words, most, "{}", it.name);
+            assert_eq!(
+                it.memory.first().map(|it| it.words),
+                it.internal_words_default.map(|it| it.value),
+                "{}",
+                it.name
+            );
+        }
+    }
+
+    #[test]
+    fn keys_of_a_configuration_are_unique() {
+        let mut keys: Vec<&str> = NUMBERED.iter().map(|it| it.key).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), NUMBERED.len());
+        for it in BLOCK_COUNTS {
+            let numbered = NUMBERED.iter().find(|row| row.what == it.what).unwrap();
+            assert_eq!((numbered.key, numbered.prefix.trim_start_matches('%')), (it.symbol, it.symbol));
         }
     }
 }

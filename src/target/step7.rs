@@ -1,6 +1,6 @@
 //! SIMATIC S7-300 and S7-400.
 
-use super::{Limit, Range};
+use super::{Counted, Limit, Numbered, Range};
 
 /// Longest jump label, in characters.
 pub const LABEL_LENGTH: Limit = Limit::new(4, "S7:315");
@@ -10,6 +10,8 @@ pub const PARENTHESIS_DEPTH: Limit = Limit::new(7, "the vendor's general documen
 
 /// A counter counts from 0 to this.
 pub const COUNTER_MAX: Limit = Limit::new(999, "S7:591");
+/// What a counter can be set to.
+pub const COUNTER_PRESETS: Range = Range::new(0, COUNTER_MAX.value, COUNTER_MAX.source);
 
 /// Longest time of a timer, in seconds: 2H_46M_30S.
 pub const TIMER_MAX_SECONDS: Limit = Limit::new(9990, "S7:485");
@@ -17,6 +19,16 @@ pub const TIMER_MAX_SECONDS: Limit = Limit::new(9990, "S7:485");
 /// Number of timers and counters that a CPU usually has; it varies with the CPU.
 pub const USUAL_TIMERS: Limit = Limit::new(256, "S7:477");
 pub const USUAL_COUNTERS: Limit = Limit::new(256, "S7:591");
+
+/// The source manual leaves the rest open.
+const GENERAL: &str = "the vendor's general documentation";
+
+/// What has a number and is counted. Numbers start at 0.
+pub static NUMBERED: &[Numbered] = &[
+    Numbered { what: Counted::Bytes, key: "M", prefix: "MB ", plural: "bytes of memory" },
+    Numbered { what: Counted::Timers, key: "T", prefix: "T ", plural: "timers" },
+    Numbered { what: Counted::Counters, key: "Z", prefix: "Z ", plural: "counters" },
+];
 
 /// What one CPU has. `None` where no source tells.
 #[derive(Debug, PartialEq, Eq)]
@@ -31,6 +43,27 @@ pub struct Cpu {
     /// Accumulators and bits of each.
     pub accumulators: Option<Limit>,
     pub accumulator_bits: Option<Limit>,
+    /// Bytes of M, at most.
+    pub memory_bytes: Option<Limit>,
+    pub timers: Option<Limit>,
+    pub counters: Option<Limit>,
+}
+
+impl Cpu {
+    /// How many of something the CPU has at most; `None` where no source tells.
+    pub fn count(&self, what: Counted) -> Option<Limit> {
+        match what {
+            Counted::Bytes => self.memory_bytes,
+            Counted::Timers => self.timers,
+            Counted::Counters => self.counters,
+            _ => None,
+        }
+    }
+}
+
+/// The most that any CPU has of something.
+pub fn largest_count(what: Counted) -> Option<Limit> {
+    CPUS.iter().filter_map(|it| it.count(what)).max_by_key(|it| it.value)
 }
 
 /// The CPU that the manual describes; the series names stand for the others, of which it says only that they vary.
@@ -42,11 +75,26 @@ pub static CPUS: &[Cpu] = &[
         watchdog_ms: Some(Limit::new(150, "S7:74")),
         accumulators: Some(Limit::new(2, "S7:348")),
         accumulator_bits: Some(Limit::new(32, "S7:348")),
+        memory_bytes: Some(Limit::new(256, GENERAL)),
+        timers: Some(USUAL_TIMERS),
+        counters: Some(USUAL_COUNTERS),
     },
-    series("S7-300"),
-    series("S7-400"),
+    // Of its largest CPU, the 319.
+    series("S7-300", 8192),
+    // Of its largest CPUs, the 417.
+    series("S7-400", 16_384),
 ];
 
-const fn series(name: &'static str) -> Cpu {
-    Cpu { name, call_depth: None, retentive_bytes: None, watchdog_ms: None, accumulators: None, accumulator_bits: None }
+const fn series(name: &'static str, memory_bytes: u32) -> Cpu {
+    Cpu {
+        name,
+        call_depth: None,
+        retentive_bytes: None,
+        watchdog_ms: None,
+        accumulators: None,
+        accumulator_bits: None,
+        memory_bytes: Some(Limit::new(memory_bytes, GENERAL)),
+        timers: Some(Limit::new(2048, GENERAL)),
+        counters: Some(Limit::new(2048, GENERAL)),
+    }
 }

@@ -81,6 +81,7 @@ impl Builder {
             declarations: Vec::new(),
             symbols: Vec::new(),
             remarks: Vec::new(),
+            indexes: Vec::new(),
             constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),
@@ -90,7 +91,7 @@ impl Builder {
             reads_indirectly: false,
             writes_indirectly: false,
             has_gaps: false,
-            has_floats: false,
+            mixes_floats: false,
         };
         Self {
             model,

@@ -362,7 +362,7 @@ impl Lowering {
             },
             Some(IlOperand::Bracket(it)) => match it.expr() {
                 Some(expr) => match self.pl7.expr(&expr) {
-                    (_, Kind::Number) if !is_elided(&expr) => {
+                    (_, Kind::Number | Kind::Float) if !is_elided(&expr) => {
                         let at = it.syntax().text_range();
                         let message =
                             format!("`{}` takes a comparison in its brackets, not a number", op.info().mnemonic);
@@ -379,7 +379,7 @@ impl Lowering {
     }
 
     fn test_object(&mut self, object: ObjectId, edge: Option<bool>, at: TextRange, op: IlOp) -> ExprId {
-        if self.pl7.kind(object) == Kind::Number {
+        if self.pl7.kind(object).is_number() {
             self.takes_a_bit(object, at, op);
             return self.pl7.b.exprs().opaque();
         }
@@ -538,7 +538,7 @@ impl Lowering {
             self.pl7.b.drive(object, pin, when, None, at, range);
             return;
         }
-        if self.pl7.kind(object) == Kind::Number {
+        if self.pl7.kind(object).is_number() {
             self.takes_a_bit(object, at, op);
             return;
         }

@@ -9,18 +9,33 @@ use crate::model::entity::Entity;
 use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
-use crate::model::unit::{Argument, Call, Callee, Constant, DeadCause, Leave, Mode, OddityKind, Pin, StatementKind};
+use crate::model::unit::{
+    Argument, Call, Callee, Constant, DeadCause, Index, IndexKind, Leave, Mode, OddityKind, Pin, StatementKind,
+};
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
-use crate::syntax::pl7::functions::Function;
+use crate::syntax::pl7::functions::{self, Function};
 use crate::syntax::{Language, SyntaxKind, SyntaxNode, WalkEvent};
 
 /// What kind of value an expression has, as far as it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Bit,
-    /// Word, double word, float or table.
+    /// Word, double word or table of them; also what is some number.
     Number,
+    /// Floating-point number, or table of them.
+    Float,
     Unknown,
+}
+
+impl Kind {
+    pub(super) fn is_number(self) -> bool {
+        matches!(self, Self::Number | Self::Float)
+    }
+
+    /// Whether a floating-point number meets another, so that someone has to look.
+    fn may_mix(self, other: Self) -> bool {
+        matches!((self, other), (Self::Float, Self::Number) | (Self::Number, Self::Float))
+    }
 }
 
 pub(super) struct Pl7 {
@@ -70,9 +85,7 @@ impl Pl7 {
         let is_direct = index.is_none();
         let parsed = match index {
             Some(index) => {
-                if let Some(expr) = index.expr() {
-                    self.expr(&expr);
-                }
+                self.index(index);
                 object::pl7::parse_indexed(&address, it.suffix().as_deref()).map(|mut object| {
                     object.text = it.syntax().text().into_owned().split_whitespace().collect::<String>().into();
                     object
@@ -81,10 +94,7 @@ impl Pl7 {
             None => object::pl7::parse(&address),
         };
         let id = match parsed {
-            Ok(object) => {
-                self.b.model.has_floats |= matches!(object.ty, Type::Float | Type::FloatTable(_));
-                self.b.object(object)
-            }
+            Ok(object) => self.b.object(object),
             Err(error) => return (self.address_error(error, range, &address), range),
         };
         if is_direct {
@@ -93,13 +103,32 @@ impl Pl7 {
         (id, range)
     }
 
+    /// Records an index and its reads.
+    fn index(&mut self, index: ast::Index<'_>) {
+        let Some(expr) = index.expr() else { return };
+        let what = match self.place(&expr) {
+            Some((object, range)) => {
+                self.read(object, range);
+                IndexKind::Object(object)
+            }
+            None => {
+                let (value, _) = self.expr(&expr);
+                match *self.b.exprs().get(value) {
+                    crate::model::expr::Expr::Int(value) => IndexKind::Constant(value),
+                    _ => IndexKind::Computed,
+                }
+            }
+        };
+        self.b.model.indexes.push(Index { what, range: expr.syntax().text_range() });
+    }
+
     /// A symbol or an item of a DFB instance.
     pub(super) fn name_ref(&mut self, it: &ast::NameRef) -> (ObjectId, TextRange) {
         let range = it.syntax().text_range();
         let path = it.path();
         let indexed = it.index();
-        if let Some(expr) = indexed.and_then(ast::Index::expr) {
-            self.expr(&expr);
+        if let Some(index) = indexed {
+            self.index(index);
         }
         if let Some(suggestion) = object::pl7::suggest(&path) {
             let message = format!("`{path}` lacks its percent sign");
@@ -129,6 +158,7 @@ impl Pl7 {
         match self.ty(object) {
             Type::Bool => Kind::Bit,
             Type::Unknown => Kind::Unknown,
+            Type::Float | Type::FloatTable(_) => Kind::Float,
             _ => Kind::Number,
         }
     }
@@ -157,10 +187,7 @@ impl Pl7 {
         match literal::parse_pl7(token.text()) {
             Ok(Value::Bool(value)) => (Exprs::bool(value), Kind::Bit),
             Ok(Value::Int { value, .. }) => (self.b.exprs().int(value), Kind::Number),
-            Ok(Value::Real(value)) => {
-                self.b.model.has_floats = true;
-                (self.b.exprs().float(value), Kind::Number)
-            }
+            Ok(Value::Real(value)) => (self.b.exprs().float(value), Kind::Float),
             Ok(Value::Count(value)) => (self.b.exprs().int(i64::from(value)), Kind::Number),
             Ok(value) => {
                 let text = SmolStr::new(token.text());
@@ -222,7 +249,7 @@ impl Pl7 {
             Some(UnaryOp::Not) => {
                 let (value, kind) = self.expr(&operand);
                 match kind {
-                    Kind::Number => (self.b.exprs().call("NOT", vec![value]), Kind::Number),
+                    Kind::Number | Kind::Float => (self.b.exprs().call("NOT", vec![value]), kind),
                     _ => (self.b.exprs().not(value), kind),
                 }
             }
@@ -234,8 +261,8 @@ impl Pl7 {
                 {
                     return (self.b.exprs().int(value), Kind::Number);
                 }
-                let (value, _) = self.expr(&operand);
-                (self.b.exprs().negate(value), Kind::Number)
+                let (value, kind) = self.expr(&operand);
+                (self.b.exprs().negate(value), if kind == Kind::Float { kind } else { Kind::Number })
             }
             Some(UnaryOp::Plus) | None => self.expr(&operand),
         }
@@ -244,14 +271,16 @@ impl Pl7 {
     fn binary(&mut self, it: &ast::BinExpr) -> (ExprId, Kind) {
         let (a, a_kind) = self.optional(it.lhs());
         let (b, b_kind) = self.optional(it.rhs());
-        let numeric = a_kind == Kind::Number || b_kind == Kind::Number;
+        let numeric = a_kind.is_number() || b_kind.is_number();
+        self.b.model.mixes_floats |= a_kind.may_mix(b_kind);
+        let number = if [a_kind, b_kind].contains(&Kind::Float) { Kind::Float } else { Kind::Number };
         let kind = match (a_kind, b_kind) {
             (Kind::Bit, _) | (_, Kind::Bit) => Kind::Bit,
             _ => Kind::Unknown,
         };
         let Some(op) = it.op() else { return self.optional(None) };
         let exprs = self.b.exprs();
-        let arithmetic = |operator| (operator, Kind::Number);
+        let arithmetic = |operator| (operator, number);
         let (operator, kind) = match op {
             BinOp::And if !numeric => return (exprs.and(a, b), kind),
             BinOp::Or if !numeric => return (exprs.or(a, b), kind),
@@ -277,20 +306,28 @@ impl Pl7 {
 
     fn call_expr(&mut self, it: &ast::CallExpr) -> (ExprId, Kind) {
         let function = it.function();
-        self.b.model.has_floats |= function.is_some_and(Function::has_floats);
         let mut values = Vec::new();
+        let mut first = Kind::Number;
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
             // What has a value is a function, known or not, and not an instance that keeps what it is given.
-            let value = match function {
-                Some(_) => self.argument(&argument, function, position).1,
-                None => self.expr(&argument).0,
+            let (value, kind) = match function {
+                Some(_) => {
+                    let (_, value, kind) = self.argument(&argument, function, position);
+                    (value, kind)
+                }
+                None => self.expr(&argument),
             };
+            if position == 0 {
+                first = kind;
+            }
             values.push(value);
         }
         let name = it.name().map(|it| it.text().to_ascii_uppercase()).unwrap_or_default();
         let kind = match function.and_then(|it| it.result) {
-            Some(crate::syntax::pl7::functions::Kind::Bit) => Kind::Bit,
+            Some(functions::Kind::Bit) => Kind::Bit,
+            Some(functions::Kind::Float | functions::Kind::FloatTable) => Kind::Float,
+            Some(functions::Kind::Number) if first == Kind::Float => Kind::Float,
             Some(_) => Kind::Number,
             None => Kind::Unknown,
         };
@@ -301,11 +338,17 @@ impl Pl7 {
     fn argument(
         &mut self,
         argument: &Expr,
-        function: Option<&'static crate::syntax::pl7::functions::Function>,
+        function: Option<&'static Function>,
         position: usize,
-    ) -> (Option<ObjectId>, ExprId) {
-        use crate::syntax::pl7::functions::Access;
-        let known = function.and_then(|it| it.parameters.get(position)).map(|it| it.access);
+    ) -> (Option<ObjectId>, ExprId, Kind) {
+        use functions::Access;
+        let parameter = function.and_then(|it| it.parameters.get(position));
+        let wanted = match parameter.map(|it| it.kind) {
+            Some(functions::Kind::Float | functions::Kind::FloatTable) => Kind::Float,
+            Some(functions::Kind::Number | functions::Kind::Any) | None => Kind::Unknown,
+            Some(_) => Kind::Number,
+        };
+        let known = parameter.map(|it| it.access);
         // An instance of a DFB, or an argument that our volume of the manual does not describe: what becomes of it is
         // not known here.
         let is_open = function.is_none_or(|it| it.is_open);
@@ -315,17 +358,20 @@ impl Pl7 {
         {
             let data = self.b.model.object(object);
             let (class, rights) = (data.class, data.rights);
+            let kind = self.kind(object);
+            self.b.model.mixes_floats |= wanted.may_mix(kind);
             if class == Class::Indirect {
-                return (Some(object), self.b.exprs().opaque());
+                return (Some(object), self.b.exprs().opaque(), kind);
             }
             if known.is_none() && matches!(rights, Rights::ReadOnly(_)) {
-                return (Some(object), self.b.read(object, range));
+                return (Some(object), self.b.read(object, range), kind);
             }
             self.b.touch(object, if access == Access::Write { Mode::Output } else { Mode::InOut }, range);
-            return (Some(object), self.b.exprs().opaque());
+            return (Some(object), self.b.exprs().opaque(), kind);
         }
-        let (value, _) = self.expr(argument);
-        (None, value)
+        let (value, kind) = self.expr(argument);
+        self.b.model.mixes_floats |= wanted.may_mix(kind);
+        (None, value, kind)
     }
 
     /// `target := value`.
@@ -343,9 +389,10 @@ impl Pl7 {
         if self.b.model.object(object).class == Class::Indirect {
             return;
         }
+        self.b.model.mixes_floats |= self.kind(object).may_mix(kind);
         let is_bit = match self.kind(object) {
             Kind::Bit => true,
-            Kind::Number => false,
+            Kind::Number | Kind::Float => false,
             Kind::Unknown => kind == Kind::Bit,
         };
         if is_bit {
@@ -398,12 +445,11 @@ impl Pl7 {
             return;
         }
         let function = it.function();
-        self.b.model.has_floats |= function.is_some_and(Function::has_floats);
         let mut arguments = Vec::new();
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
             let at = argument.syntax().text_range();
-            let (object, _) = self.argument(&argument, function, position);
+            let (object, ..) = self.argument(&argument, function, position);
             arguments.push(Argument { name: None, object, range: at });
         }
         let callee_kind = match function {

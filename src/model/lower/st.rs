@@ -394,4 +394,29 @@ mod tests {
         assert!(matches!(kinds("! %MW0 := 99999999999;").as_slice(), [OddityKind::Literal(_)]));
         assert_eq!(statements("! MW0 := 5;"), [""; 0], "what is no object is not written");
     }
+
+    #[test]
+    fn indexes_are_kept_with_what_they_are() {
+        use crate::model::unit::IndexKind;
+
+        let text = "! %MW0 := %MW5[%MW2] + %MW6[ 4 ] + %MW7[%MW1 + 1] + Table[%KW3];";
+        let model = model(text);
+        let indexes: Vec<_> = model
+            .indexes
+            .iter()
+            .map(|it| {
+                let what = match it.what {
+                    IndexKind::Object(object) => model.object(object).text.to_string(),
+                    IndexKind::Constant(value) => value.to_string(),
+                    IndexKind::Computed => "computed".to_owned(),
+                };
+                (what, &text[std::ops::Range::<usize>::from(it.range)])
+            })
+            .collect();
+        let expected = [("%MW2", "%MW2"), ("4", "4"), ("computed", "%MW1 + 1"), ("%KW3", "%KW3")];
+        assert_eq!(indexes, expected.map(|it| (it.0.to_owned(), it.1)));
+        let reads = model.accesses.iter().filter(|it| it.mode == Mode::Read);
+        let read: Vec<_> = reads.map(|it| model.object(it.object).text.as_str()).collect();
+        assert_eq!(read, ["%MW2", "%MW5[%MW2]", "%MW6[4]", "%MW1", "%MW7[%MW1+1]", "%KW3", "Table[%KW3]"]);
+    }
 }

@@ -96,6 +96,33 @@ pub fn suggest(name: &str) -> Option<String> {
     }
 }
 
+/// Symbol of the function block that an object belongs to, and its number: `TM` and 8 for `%TM8.Q`.
+pub fn block_of(object: &Object) -> Option<(&'static str, u32)> {
+    match object.footprint.area {
+        Area::Block(symbol, number) => Some((symbol, number)),
+        _ => None,
+    }
+}
+
+/// Whether an object is the preset of a function block: `%TM2.P`.
+pub fn is_preset(object: &Object) -> bool {
+    let item = block_of(object).and_then(|(symbol, _)| {
+        let block = BLOCKS.iter().find(|it| it.symbol == symbol)?;
+        block.items.iter().find(|it| it.start == object.footprint.start && it.class == object.class)
+    });
+    !object.extracted && item.is_some_and(|it| it.name == "P")
+}
+
+/// Whether a step belongs to a macro-step, and to which: 5 for `%X5.9`, `%X5.IN` and their times.
+pub fn macro_step_of(object: &Object) -> Option<u32> {
+    let index = match object.footprint.area {
+        Area::Steps => object.footprint.start,
+        Area::StepTimes => object.footprint.start / 16,
+        _ => return None,
+    };
+    (index / MACRO_STRIDE).checked_sub(1)
+}
+
 /// An object before it has a text.
 #[derive(Debug, Clone)]
 struct Place {

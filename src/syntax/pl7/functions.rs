@@ -87,12 +87,6 @@ pub struct Function {
 }
 
 impl Function {
-    /// Whether it takes or makes a floating-point number, and nothing else may stand there.
-    pub fn has_floats(&self) -> bool {
-        let is_float = |it: Kind| matches!(it, Kind::Float | Kind::FloatTable);
-        self.result.is_some_and(is_float) || self.parameters.iter().any(|it| is_float(it.kind))
-    }
-
     const fn call(name: &'static str, parameters: &'static [Parameter], result: Option<Kind>, line: u16) -> Self {
         Self::operator(name, Form::Call, parameters, result, line)
     }

@@ -1,0 +1,30 @@
+//! O004: more timers of both kinds together than the controller has.
+
+use crate::analysis::{Site, counts};
+use crate::lint::{ProgramCx, Sink};
+use crate::target::{Counted, CountedBy};
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    let Some(most) = cx.target.all_timers() else { return };
+    // A number that is too high by itself has a rule of its own.
+    let highest = |what: Counted| counts::highest(cx.program, cx.target, what);
+    let (Some((timer, last)), Some((old, last_old))) = (highest(Counted::Timers), highest(Counted::OldTimers)) else {
+        return;
+    };
+    let total = last.saturating_add(last_old).saturating_add(2);
+    if total <= most.value {
+        return;
+    }
+    let (Some(at), Some(other)) = (old.uses.first(), timer.uses.first()) else { return };
+    let has = match most.by {
+        CountedBy::Controller(name) => format!("a {name} has {} together", most.value),
+        CountedBy::Configuration | CountedBy::Family => format!("no controller has more than {} together", most.value),
+    };
+    let (text, other_text) = (counts::name(old.object), counts::name(timer.object));
+    sink.report(at.site(), format!("`{other_text}` and `{text}` take {total} timers, and {has}"))
+        .related(other.site(), format!("`{other_text}` takes {} of them", last.saturating_add(1)))
+        .note(format!(
+            "blocks are counted from 0 up to the highest number used; the limit is given in {}",
+            most.source
+        ));
+}
