@@ -53,7 +53,7 @@ pub struct FactObject {
 }
 
 impl FactObject {
-    fn new(object: &Object, number: bool) -> Self {
+    pub(super) fn new(object: &Object, number: bool) -> Self {
         let key = (&object.footprint, object.ty, object.indexed);
         let hash = if is_shared(object) { FxBuildHasher.hash_one(key) } else { 0 };
         Self { object: object.clone(), number, hash }

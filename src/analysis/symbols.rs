@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::facts::UnitFacts;
+use super::facts::{FactObject, UnitFacts};
 use crate::model::object::{Class, Object, Type, pl7};
 use crate::model::symbols::key;
 use crate::model::unit::Mode;
@@ -142,7 +142,9 @@ fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFa
         }
     }
     for (fact, object) in facts.objects.iter_mut().zip(found) {
-        fact.object = object.unwrap_or_else(|| fact.object.clone());
+        if let Some(object) = object {
+            *fact = FactObject::new(&object, fact.number);
+        }
     }
     join_aliases(&mut facts);
     Cow::Owned(facts)
@@ -261,6 +263,13 @@ mod tests {
             ("Other", 0, Class::Symbol),
         ];
         assert_eq!(shown.iter().map(|it| (it.0, it.2)).collect::<Vec<_>>(), expected.map(|it| (it.0, it.2)));
+        let other = facts("! %MW10 := %MW4;", Language::Pl7St);
+        let same = |a: &str, b: &str| {
+            let one = resolved[0].objects.iter().find(|it| it.object.text == a);
+            let two = other.objects.iter().find(|it| it.object.text == b);
+            one.zip(two).is_some_and(|(one, two)| one.is_same(two))
+        };
+        assert!(same("Four", "%MW10") && same("Etat", "%MW4") && !same("Etat", "%MW10"));
         for (found, expected) in shown.iter().zip(expected).filter(|it| it.0.2 == Class::Memory) {
             assert_eq!(found.1, expected.1, "{}", found.0);
         }
