@@ -259,6 +259,7 @@ fn folder_of(path: &str) -> &str {
 pub fn family(detected: Detected) -> Option<Family> {
     match detected {
         Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
+        Detected::Pl72 => Some(Family::Pl72),
         Detected::Step7 => Some(Family::Step7),
         _ => None,
     }
@@ -634,8 +635,20 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     });
     let found: Vec<Vec<FileFinding>> =
         files.par_iter().map_with(db.clone(), |db, &file| file_findings(db, file).to_vec()).collect();
-    let indices: FxHashMap<SourceFile, u32> = files.iter().zip(0..).map(|(&file, at)| (file, at)).collect();
+    let mut indices: FxHashMap<SourceFile, u32> = FxHashMap::default();
     for (at, &file) in files.iter().enumerate() {
+        for &unit in units(&db, file) {
+            for code in &analysis(&db, unit).findings.failed {
+                let (path, entity) = (file.path(&db), unit.entity(&db));
+                outcome.internal_errors.push(format!("{path}: {entity}: rule {code} failed"));
+            }
+        }
+        if let Some(form) = unread_form(&db, file).filter(|_| found.get(at).is_some_and(Vec::is_empty)) {
+            let reason = UnreadReason::Unsupported(form.to_owned());
+            outcome.unread.push(Unread { path: file.path(&db).to_owned(), reason });
+            continue;
+        }
+        indices.insert(file, u32::try_from(outcome.files.len()).unwrap_or(u32::MAX));
         let mut view = SourceView {
             path: file.path(&db).to_owned(),
             text: file.text(&db).clone(),
@@ -653,11 +666,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             if *unit.entity(&db) != Entity::Container {
                 view.entities += 1;
             }
-            let analysis = analysis(&db, unit);
-            view.not_understood += analysis.not_understood;
-            for code in &analysis.findings.failed {
-                outcome.internal_errors.push(format!("{}: {}: rule {code} failed", view.path, unit.entity(&db)));
-            }
+            view.not_understood += analysis(&db, unit).not_understood;
         }
         outcome.files.push(view);
     }
@@ -700,11 +709,19 @@ fn not_understood(language: Language, parse: &Parse) -> usize {
     errors.map(|it| usize::from(it.text_range().len())).sum()
 }
 
+/// The form of a file that holds nothing but code in forms that are not read.
+fn unread_form(db: &dyn Db, file: SourceFile) -> Option<&'static str> {
+    let mut code = units(db, file).iter().filter(|it| *it.entity(db) != Entity::Container).peekable();
+    let form = code.peek().and_then(|it| it.unsupported(db))?;
+    code.all(|it| it.unsupported(db).is_some()).then_some(form)
+}
+
 fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
         (Detected::Stx, _) => "PL7 project, by its cross-reference".to_owned(),
+        (Detected::Pl72, _) => "PL7-2".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::German))) => "STEP 7 AWL, German mnemonics".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
         (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),

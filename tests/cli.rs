@@ -61,6 +61,22 @@ fn help_is_no_mistake() {
     assert_eq!(version.out, format!("plclint {}\n", env!("CARGO_PKG_VERSION")));
 }
 
+/// A file of which nothing is read is named with its form, whether the form is the file's or that of all its units.
+#[test]
+fn what_is_not_read_is_named() {
+    let rung = "RUNG\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
+    let folder = folder(&[
+        ("press.txt", &format!("LD : PL7-2 - PRL\n{rung}LD : PL7-2 - POST\n{rung}")),
+        ("mixed.txt", &format!("LD : MAST - SR1\n{rung}ST : MAST - MAIN\n! %M1 := %M2;\n")),
+        ("plclint.toml", "[target]\ncontroller = 'TSX 17-20'"),
+    ]);
+    let ran = run(folder.path(), &["check", "--format", "concise"]);
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let all = ran.out + &ran.err;
+    assert!(all.contains("press.txt: not read: PL7-2 ladder or Grafcet is not supported"), "{all}");
+    assert!(!all.contains("mixed.txt: not read"), "{all}");
+}
+
 #[test]
 fn wrong_arguments_are_wrong_usage() {
     let folder = folder(&[]);

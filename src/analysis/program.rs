@@ -132,8 +132,8 @@ impl<'a> ProgramIndex<'a> {
             }
         }
         let contexts = contexts(&units, &calls);
-        let order = order(&units, &calls);
-        let complete = is_complete(&units, &calls);
+        let order = order(family, &units, &calls);
+        let complete = is_complete(family, &units, &calls);
         let exclusive = units
             .iter()
             .enumerate()
@@ -228,7 +228,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether the program's cyclic entry point was read: OB 1, a section of MAST.
     pub fn has_main(&self) -> bool {
-        has_main(&self.units)
+        has_main(self.family, &self.units)
     }
 
     /// Whether only start-up blocks run the unit: once, before the first scan.
@@ -374,8 +374,9 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<Vec<Context>>
     contexts
 }
 
-/// Depth-first from the entry points in file order, callees where they are called; then what nothing calls.
-fn order(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
+/// Depth-first from the entry points in file order, callees where they are called; then what nothing calls. The parts of a
+/// PL7-2 program have an order of their own, wherever they are written.
+fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
     let mut by_unit: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
     for call in calls {
         if let Some(target) = call.target {
@@ -384,8 +385,11 @@ fn order(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
     }
     let mut order = vec![u32::MAX; units.len()];
     let mut next = 0;
-    let entries = (0..units.len()).filter(|&it| is_entry(&units[it].entity));
-    for root in entries.chain(0..units.len()) {
+    let mut entries: Vec<usize> = (0..units.len()).filter(|&it| is_entry(&units[it].entity)).collect();
+    if family == Family::Pl72 {
+        entries.sort_by_key(|&it| pl7_2_rank(&units[it].entity));
+    }
+    for root in entries.into_iter().chain(0..units.len()) {
         let mut stack = vec![as_index(root)];
         while let Some(at) = stack.pop() {
             if order[at as usize] != u32::MAX {
@@ -399,21 +403,34 @@ fn order(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
     order
 }
 
-/// Whether the units hold the program's cyclic entry point.
-fn has_main(units: &[&UnitFacts]) -> bool {
-    units.iter().any(|it| {
+/// Preliminary, sequential, posterior processing of the master task (PL72:1505-1511); the fast task interrupts them.
+fn pl7_2_rank(entity: &Entity) -> u32 {
+    match entity {
+        Entity::Pl7 { task: Task::Mast, part: Part::Preliminary, .. } => 0,
+        Entity::Pl7 { task: Task::Mast, part: Part::Chart(_), .. } => 1,
+        Entity::Pl7 { task: Task::Mast, .. } => 2,
+        _ => 3,
+    }
+}
+
+/// Whether the units hold the program's cyclic entry point. The master task of PL7-2 is one text, or the parts of a Grafcet
+/// program, of which none but the chart must be there (PL72:1505-1511).
+fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
+    units.iter().any(|it| match (family, &it.entity) {
         // A cross-reference is one of a whole project.
-        it.language == Language::Pl7Xref
-            || matches!(
-                &it.entity,
-                Entity::Pl7 { part: Part::Main, .. } | Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. }
-            )
+        _ if it.language == Language::Pl7Xref => true,
+        (Family::Pl72, Entity::Pl7 { task, part, .. }) => {
+            *task == Task::Mast && matches!(part, Part::Main | Part::Chart(_))
+        }
+        (_, Entity::Pl7 { part: Part::Main, .. }) => true,
+        (_, Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. }) => true,
+        _ => false,
     })
 }
 
 /// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
-fn is_complete(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
-    let entry = has_main(units) && !units.iter().any(|it| it.has_gaps);
+fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
+    let entry = has_main(family, units) && !units.iter().any(|it| it.has_gaps);
     let closed = calls.iter().all(|call| match &call.it.callee {
         Callee::Block(BlockName::Number(kind, _)) if kind.is_system() => true,
         Callee::Subroutine(_) | Callee::Block(_) => call.target.is_some(),
@@ -495,4 +512,42 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
         (rank, place.start, std::cmp::Reverse(place.bits), it.object.ty, it.object.indexed)
     });
     objects
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::lower;
+    use crate::source::entity_from_address;
+    use crate::syntax::{self, Language};
+
+    fn units(addresses: &[&str]) -> Vec<UnitFacts> {
+        let parse = syntax::parse(Language::Pl7St, "");
+        let unit = |address: &&str| {
+            let entity = entity_from_address(address).unwrap_or_else(|| panic!("{address}"));
+            UnitFacts::new(&lower::lower(parse.syntax(), "", entity, Language::Pl7St))
+        };
+        addresses.iter().map(unit).collect()
+    }
+
+    #[test]
+    fn entry_points_of_pl7_2() {
+        let complete = |addresses: &[&str]| {
+            let units = units(addresses);
+            ProgramIndex::new(Family::Pl72, units.iter().collect()).complete
+        };
+        assert!(complete(&["PL7-2 MAST", "PL7-2 FAST"]));
+        assert!(complete(&["PL7-2 PRL", "PL7-2 SEQ", "PL7-2 POST"]));
+        assert!(complete(&["PL7-2 SEQ"]));
+        assert!(!complete(&["PL7-2 PRL", "PL7-2 POST"]));
+        assert!(!complete(&["PL7-2 FAST"]));
+    }
+
+    #[test]
+    fn parts_of_pl7_2_run_in_their_own_order() {
+        let units = units(&["PL7-2 FAST", "PL7-2 POST", "PL7-2 SEQ - X1", "PL7-2 PRL", "PL7-2 SEQ"]);
+        let order = |family| ProgramIndex::new(family, units.iter().collect()).order;
+        assert_eq!(order(Family::Pl72), [4, 3, 1, 0, 2]);
+        assert_eq!(order(Family::Pl7), [0, 1, 2, 3, 4]);
+    }
 }

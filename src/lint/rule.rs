@@ -77,7 +77,9 @@ impl Rule {
     pub fn is_for(&self, language: Language) -> bool {
         self.dialects.iter().any(|dialect| match *dialect {
             "all" => true,
-            "pl7" => !matches!(language, Language::Awl(_)),
+            "pl7" => {
+                matches!(language, Language::Pl7Il | Language::Pl7St | Language::Exchange | Language::Pl7Xref)
+            }
             "il" => language == Language::Pl7Il,
             "st" => language == Language::Pl7St,
             "s7" => matches!(language, Language::Awl(_)),
@@ -89,6 +91,7 @@ impl Rule {
     pub fn is_for_family(&self, family: Family) -> bool {
         self.dialects.iter().any(|dialect| match family {
             Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st"),
+            Family::Pl72 => matches!(*dialect, "all" | "pl72"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })
     }

@@ -122,7 +122,7 @@ struct TargetConfig {
     /// `TSX 37-22`, `CPU 314`.
     controller: Option<Spanned<String>>,
     /// `V3`, where the documents distinguish versions.
-    version: Option<String>,
+    version: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -298,6 +298,12 @@ impl Settings {
             controller(name).map_err(|message| ConfigError { origin: Origin::Option("--target"), message })?;
         }
         counts(&text, &file, &overrides)?;
+        if let (Some(controller), Some(version)) = (&file.target.controller, &file.target.version) {
+            let target = controller.get_ref().parse::<crate::target::Target>();
+            if let Some(Err(error)) = target.ok().map(|it| it.with_version(Some(version.get_ref()))) {
+                return Err(text.error(Some(version.span()), error.to_string()));
+            }
+        }
         let base = selection(registry, &text, &file.rules, &overrides)?;
         let mut per_file = Vec::new();
         for it in &file.per_file {
@@ -377,7 +383,8 @@ impl Settings {
 
     /// The controller's version; none when the command line names another controller than the file.
     pub fn version(&self) -> Option<&str> {
-        self.0.file.target.version.as_deref().filter(|_| !self.is_another_controller())
+        let version = self.0.file.target.version.as_ref().filter(|_| !self.is_another_controller())?;
+        Some(version.get_ref().as_str())
     }
 
     /// Configured number of objects of a family, by its mnemonic: `M`, `MW`; none when the command line names another
@@ -398,7 +405,8 @@ impl Settings {
     /// As [`Self::target`], for a program that names its controller itself: unless one is configured, it is that one.
     pub fn target_or(&self, family: Family, named: Option<Target>) -> Target {
         let or_any = |it: Option<Target>| it.or(named).unwrap_or(Target::any(family));
-        match self.controller().and_then(|it| it.parse::<Target>().ok()) {
+        let configured = self.controller().and_then(|it| it.parse::<Target>().ok());
+        match configured.map(|it| it.with_version(self.version()).unwrap_or(it)) {
             Some(it) if it.family() != family => or_any(None),
             it if self.0.file.objects.is_empty() => or_any(it),
             it => or_any(it).with_counts(|key| self.objects(key)),
@@ -699,6 +707,8 @@ mod tests {
         assert!(error("[rules]\nselekt = []").starts_with("plclint.toml:2:1: unknown field `selekt`"));
         assert!(error("[[per-file]]\nignore = []").contains("missing field `path`"));
         assert!(error("[target]\ncontroller = 'TSX 99'").starts_with("plclint.toml:2:14: unknown controller"));
+        let message = error("[target]\ncontroller = 'TSX 27'\nversion = 'new'");
+        assert!(message.starts_with("plclint.toml:3:11: unknown version"), "{message}");
         assert!(error("[files]\nencoding = 'windows-1225'").starts_with("plclint.toml:2:12: unknown encoding"));
         assert!(error("[files]\nexclude = ['a{']").starts_with("plclint.toml:2:12: "));
         assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));

@@ -8,6 +8,8 @@ use smol_str::SmolStr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
     Pl7,
+    /// PL7-2, the language of the TSX 17-20, 27 and 47.
+    Pl72,
     Step7,
 }
 
@@ -16,6 +18,7 @@ impl Family {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Pl7 => "PL7",
+            Self::Pl72 => "PL7-2",
             Self::Step7 => "STEP 7",
         }
     }

@@ -170,6 +170,65 @@ pub fn parse_pl7(text: &str) -> Result<Value, LiteralError> {
     }
 }
 
+/// Reads a PL7-2 constant, of one word each (PL72:979-984): `-5`, `L'1010'`, `H'524D'`, `M'MR'`. Prefixes in either case.
+///
+/// The four spellings of one value that the document gives tell how a message lies in the word: its first character is the
+/// low byte. Where one of a single character lies is not told.
+///
+/// # Errors
+/// Text that is no constant, or a value that 16 bits do not hold.
+pub fn parse_pl72(text: &str) -> Result<Value, LiteralError> {
+    let text = text.trim();
+    let Some((prefix, body)) = text.split_once('\'') else {
+        let (negative, magnitude) = sign(text);
+        if !is_digits(magnitude) {
+            return Err(error(format!("`{}` is no constant of PL7-2 (PL72:979-984)", shown(text))));
+        }
+        let magnitude = i64::try_from(digits(magnitude)).unwrap_or(i64::MAX);
+        let value = if negative { -magnitude } else { magnitude };
+        return match i16::try_from(value) {
+            Ok(_) => Ok(Value::Int { value, ty: IntType::Plain }),
+            Err(_) => Err(error(format!("`{}` is beyond 16 bits: -32768 to 32767 (PL72:1023)", shown(text)))),
+        };
+    };
+    let Some(body) = body.strip_suffix('\'') else {
+        return Err(error(format!("`{}` is not closed by a quote", shown(text))));
+    };
+    let radix = match prefix {
+        "L" | "l" => 2,
+        "H" | "h" => 16,
+        "M" | "m" => return message(body),
+        _ => return Err(error(format!("`{}'` starts no constant of PL7-2: L, H or M (PL72:981-983)", shown(prefix)))),
+    };
+    let (name, last) = if radix == 2 { ("binary", 16) } else { ("hexadecimal", 4) };
+    if body.is_empty() || !body.chars().all(|it| it.is_digit(radix)) {
+        return Err(error(format!("`{}` is no {name} number (PL72:981-982)", shown(text))));
+    }
+    if body.len() > last {
+        return Err(error(format!(
+            "`{}` is beyond 16 bits: at most {last} digits (PL72:251, PL72:981-982)",
+            shown(text)
+        )));
+    }
+    let value =
+        body.chars().filter_map(|it| it.to_digit(radix)).fold(0, |sum, it| sum * i64::from(radix) + i64::from(it));
+    Ok(Value::Int { value, ty: IntType::Bits(16) })
+}
+
+/// The characters of `M'MR'`.
+fn message(body: &str) -> Result<Value, LiteralError> {
+    let byte = |it: char| u8::try_from(u32::from(it)).map_err(|_| error(format!("`{it}` has no code of 8 bits")));
+    let mut chars = body.chars();
+    match (chars.next(), chars.next(), chars.next()) {
+        (Some(first), None, None) => byte(first).map(|_| Value::Other),
+        (Some(first), Some(second), None) => {
+            let value = i64::from(u16::from_le_bytes([byte(first)?, byte(second)?]));
+            Ok(Value::Int { value, ty: IntType::Bits(16) })
+        }
+        _ => Err(error(format!("a word holds one or two characters, not `{}` (PL72:251, PL72:983)", shown(body)))),
+    }
+}
+
 /// What the two vendors' numbers differ in.
 struct Dialect {
     /// Where the ranges of whole numbers are given: base 10, base 2, base 16.
@@ -796,17 +855,60 @@ mod tests {
         assert_eq!(s5time_from_word(0x200A), None);
     }
 
+    /// The document gives 21069 in its four spellings (PL72:981-984).
+    #[test]
+    fn words_of_pl7_2() {
+        let word = |value| int(value, IntType::Bits(16));
+        check(
+            parse_pl72,
+            &[
+                ("21069", int(21_069, IntType::Plain)),
+                ("L'101001001001101'", word(21_069)),
+                ("H'524D'", word(21_069)),
+                ("M'MR'", word(21_069)),
+                ("h'ffff'", word(65_535)),
+                ("l'1111111111111111'", word(65_535)),
+                (" -32768 ", int(-32_768, IntType::Plain)),
+                ("+32767", int(32_767, IntType::Plain)),
+                ("M''''", word(0x2727)),
+                ("M'é '", word(0x20E9)),
+                ("M'A'", Value::Other),
+            ],
+        );
+        check_errors(
+            parse_pl72,
+            &[
+                ("32768", "beyond 16 bits"),
+                ("-32769", "PL72:1023"),
+                ("99999999999999999999", "beyond 16 bits"),
+                ("L'2'", "binary"),
+                ("L'00000000000000000'", "at most 16"),
+                ("H'12345'", "at most 4"),
+                ("H'5G'", "hexadecimal"),
+                ("H''", "hexadecimal"),
+                ("M''", "one or two"),
+                ("M'abc'", "one or two"),
+                ("M'€'", "8 bits"),
+                ("H'5", "not closed"),
+                ("X'5'", "L, H or M"),
+                ("16#FF", "no constant"),
+                ("TRUE", "no constant"),
+                ("", "no constant"),
+            ],
+        );
+    }
+
     proptest! {
         #[test]
         fn any_text_is_a_constant_or_an_error(text in r"\PC{0,24}") {
-            let _ = (parse_step7(&text), parse_pl7(&text));
+            let _ = (parse_step7(&text), parse_pl7(&text), parse_pl72(&text));
         }
 
         #[test]
         fn any_likely_constant_is_one_or_an_error(
-            text in r"(S5T|T|DT|TOD|D|P|L|C|B|W|DW|2|16|)#?(16#)?[-+(']?[0-9A-FHMSX_.:,'$)é-]{0,40}"
+            text in r"(S5T|T|DT|TOD|D|P|L|C|B|W|DW|H|M|2|16|)#?(16#)?[-+(']?[0-9A-FHMSX_.:,'$)é-]{0,40}"
         ) {
-            for error in [parse_step7(&text), parse_pl7(&text)].into_iter().filter_map(Result::err) {
+            for error in [parse_step7(&text), parse_pl7(&text), parse_pl72(&text)].into_iter().filter_map(Result::err) {
                 prop_assert!(!error.message.is_empty());
             }
         }

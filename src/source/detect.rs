@@ -24,10 +24,11 @@ pub enum Dialect {
     Pl7,
     Pl7Il,
     Pl7St,
+    Pl72,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 5] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St];
+    pub const ALL: [Self; 6] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St, Self::Pl72];
 
     pub fn as_str(self) -> &'static str {
         match self {
@@ -36,6 +37,7 @@ impl Dialect {
             Self::Pl7 => "pl7",
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
+            Self::Pl72 => "pl7-2",
         }
     }
 }
@@ -52,7 +54,7 @@ pub struct UnknownDialect(pub String);
 
 impl fmt::Display for UnknownDialect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il or pl7-st", self.0)
+        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st or pl7-2", self.0)
     }
 }
 
@@ -82,6 +84,8 @@ pub enum Detected {
     Exchange,
     /// PL7 text without blocks; where no heading says the language, it is this one.
     Pasted(Pl7Text),
+    /// PL7-2 text with headings, or what the user says is PL7-2.
+    Pl72,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
     /// A PL7 project: its text is the listing of its tables.
@@ -108,7 +112,7 @@ pub mod unsupported {
     pub const LADDER: &str = "PL7 ladder (LD)";
     pub const GRAFCET: &str = "PL7 Grafcet (GR7)";
     pub const OTHER_LANGUAGE: &str = "PL7 language other than IL and ST";
-    pub const PL7_2: &str = "PL7-2 program";
+    pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
     pub const APPLICATION: &str = "PL7 application (FEF)";
@@ -266,10 +270,11 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
         Dialect::Step7 => Detected::Step7,
-        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St if tally.is_exchange() => Detected::Exchange,
+        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl72 if tally.is_exchange() => Detected::Exchange,
         Dialect::Pl7 => Detected::Pasted(tally.pl7_text(extension(hint.path))),
         Dialect::Pl7Il => Detected::Pasted(Pl7Text::Il),
         Dialect::Pl7St => Detected::Pasted(Pl7Text::St),
+        Dialect::Pl72 => Detected::Pl72,
     }
 }
 
@@ -366,6 +371,8 @@ struct Tally {
     headings_il: u32,
     headings_st: u32,
     headings_other: u32,
+    /// Headings of PL7-2 text, in any language; the others do not count them.
+    headings_pl7_2: u32,
     /// Exchange file blocks, and those among them that no other kind of file has.
     blocks: u32,
     own_blocks: u32,
@@ -425,6 +432,7 @@ impl Tally {
             self.own_blocks += u32::from(matches!(block, "[SOURCE_UNIT]" | "[DATA_UNIT]"));
         } else if let Some(heading) = pl7_heading(line) {
             match heading.language {
+                _ if heading.pl7_2 => self.headings_pl7_2 += 1,
                 HeadingLanguage::Il => self.headings_il += 1,
                 HeadingLanguage::St => self.headings_st += 1,
                 HeadingLanguage::Ladder | HeadingLanguage::Grafcet => self.headings_other += 1,
@@ -510,6 +518,10 @@ impl Tally {
             } else {
                 Detected::Step7
             });
+        }
+        // In a text with headings of both, each unit says what it is.
+        if self.headings_pl7_2 > 0 && self.headings() == 0 {
+            return Some(Detected::Pl72);
         }
         if self.headings() > 0 && self.pl7 + self.il + self.st + self.rung + self.chart > 0 {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
@@ -899,6 +911,21 @@ mod tests {
     }
 
     #[test]
+    fn headings_of_pl7_2() {
+        let rung = "RUNG\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
+        for path in ["a.txt", "a.ld", "a.gr7"] {
+            for heading in ["LD : PL7-2 - POST", "ld : pl7-2 - FAST", "GR7 : PL7-2 - SEQ", "LD : PL7-2"] {
+                check(path, &format!("(* press *)\n{heading}\n{rung}"), Detected::Pl72);
+            }
+            check(path, &format!("LD : PL7-2 - POST\n{rung}ST : MAST - SR1\n! %M1 := %M2;\n"), ST);
+            check(path, &format!("LD : MAST - POST\n{rung}"), ST);
+        }
+        let prose = "A program of the TSX 27 is written under headings of this kind:\n\nLD : PL7-2 - POST\n\n\
+                     There is one for each part of the program, as the document says.\n";
+        check("a.txt", prose, Detected::NotPlc);
+    }
+
+    #[test]
     fn extensions_decide_what_content_does_not() {
         check("a.awl", "", STEP7);
         check("a.AWL", "// nothing yet\n", STEP7);
@@ -969,6 +996,7 @@ mod tests {
         assert_eq!(forced(Dialect::Pl7, "Moteur := Depart;"), ST);
         assert_eq!(forced(Dialect::Pl7Il, PL7_ST), IL);
         assert_eq!(forced(Dialect::Pl7St, "[SOURCE_UNIT]"), Detected::Exchange);
+        assert_eq!(forced(Dialect::Pl72, "RUNG"), Detected::Pl72);
         let explicit = FileHint { explicit: true, ..hint("a.xyz") };
         assert_eq!(detect(explicit, "= A 4.0"), STEP7);
         assert_eq!(detect(explicit, "%M0 := 1;"), ST);

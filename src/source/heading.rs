@@ -156,18 +156,20 @@ pub(super) fn pl7_heading(line: &str) -> Option<Heading> {
     Some(Heading { language, entity: pl7_address(address)?, pl7_2: false })
 }
 
-/// The module of a PL7-2 program: preliminary, sequential and posterior processing of the master task, or a whole task.
+/// The module of a PL7-2 program: preliminary, sequential and posterior processing of the master task (PL72:1505-1511), or a
+/// whole task. Of the sequential processing, what follows names the step or the transition: `SEQ - X3`, `SEQ - X3 --> X4`.
 fn pl7_2_entity(module: &str) -> Option<Entity> {
-    let module = module.trim_start_matches(|c: char| c.is_whitespace() || c == '-').trim_end();
-    let (task, part) = match module.to_ascii_uppercase().as_str() {
+    let (first, rest) = address_word(module);
+    let (task, part) = match first.to_ascii_uppercase().as_str() {
         "" | "MAST" => (Task::Mast, Part::Main),
         "PRL" => (Task::Mast, Part::Preliminary),
-        "SEQ" => (Task::Mast, Part::Chart("SEQ".into())),
+        "SEQ" => (Task::Mast, Part::Chart(chart("SEQ", rest))),
         "POST" => (Task::Mast, Part::Posterior),
         "FAST" => (Task::Fast, Part::Main),
         _ => return None,
     };
-    Some(Entity::Pl7 { task, section: None, part })
+    let is_whole = rest.is_empty() || matches!(part, Part::Chart(_));
+    is_whole.then_some(Entity::Pl7 { task, section: None, part })
 }
 
 /// Reads an address in the vendor's own form, as settings, exchange files and headings write it: `MAST SR3`,
@@ -341,6 +343,17 @@ mod tests {
             ("ST : MAST - Peinture - MACRO2 - PAGE 0 %X2.1 N1", Some("MAST - Peinture - MACRO2 - PAGE 0 %X2.1 N1")),
             ("LD : PL7-2 - POST", Some("MAST - POST")),
             ("LD : PL7-2 - SEQ", Some("MAST - SEQ")),
+            ("LD : PL7-2 - SEQ - X3", Some("MAST - SEQ - X3")),
+            ("ld:pl7-2 - seq - X3 --> X4", Some("MAST - SEQ - X3 --> X4")),
+            ("LD : PL7-2 - PRL", Some("MAST - PRL")),
+            ("LD : PL7-2 - MAST", Some("MAST - MAIN")),
+            ("GR7 : PL7-2 - SEQ", Some("MAST - SEQ")),
+            ("LD : PL7-2 - FAST", Some("FAST - MAIN")),
+            ("LD : PL7-2", Some("MAST - MAIN")),
+            ("LD : PL7-2 - PRL - X3", None),
+            ("LD : PL7-2 - SR1", None),
+            ("LD : PL7-2 (x)", None),
+            ("LD : PL7-20", None),
             ("ST : MAST - a b c", None),
             ("ST : MAST - Peinture - SR1x", None),
             ("ST : MASTER", None),

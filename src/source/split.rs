@@ -50,6 +50,7 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::Pasted(default) => pasted(&mut units, default, hint),
         Detected::Exchange => exchange(&mut units),
         Detected::Stx => project(&mut units),
+        Detected::Pl72 => pl7_2(&mut units, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
             units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
         }
@@ -236,9 +237,7 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
         }
         if let Some(heading) = pl7_heading(line.code) {
             let (language, unsupported) = match heading.language {
-                HeadingLanguage::Il | HeadingLanguage::St if heading.pl7_2 => {
-                    (Language::Exchange, Some(unsupported::PL7_2))
-                }
+                _ if heading.pl7_2 => (Language::Exchange, Some(unsupported::PL7_2)),
                 HeadingLanguage::Il => (Language::Pl7Il, None),
                 HeadingLanguage::St => (Language::Pl7St, None),
                 HeadingLanguage::Ladder => (Language::Exchange, Some(unsupported::LADDER)),
@@ -252,6 +251,27 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
     }
     if units.drafts.is_empty() {
         units.push(0, unnamed());
+    }
+}
+
+/// PL7-2: headings, and code before the first one, all in languages that are not read.
+fn pl7_2(units: &mut Units<'_>, hint: &SplitHint) {
+    let draft =
+        |entity| Draft { unsupported: Some(unsupported::PL7_2), ..Draft::new(entity, Some(Language::Exchange)) };
+    let main = || hint.entity.clone().unwrap_or(Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main });
+    for line in Lines::new(units.text, Comments::Pl7) {
+        if line.code.is_empty() {
+            continue;
+        }
+        if let Some(heading) = pl7_heading(line.code) {
+            units.push(units.code_end, draft(heading.entity));
+        } else if units.drafts.is_empty() {
+            units.push(0, draft(main()));
+        }
+        units.code_end = line.end;
+    }
+    if units.drafts.is_empty() {
+        units.push(0, draft(main()));
     }
 }
 
@@ -611,7 +631,9 @@ mod tests {
 
     #[test]
     fn empty_texts_have_one_unit() {
-        for detected in [Detected::Step7, Detected::Pasted(Pl7Text::Il), Detected::Exchange, Detected::NotPlc] {
+        for detected in
+            [Detected::Step7, Detected::Pasted(Pl7Text::Il), Detected::Exchange, Detected::Pl72, Detected::NotPlc]
+        {
             for text in ["", "\n\n", "(* only *)"] {
                 let units = split(text, detected, &SplitHint::default());
                 assert_tiles(text, &units);
@@ -645,8 +667,27 @@ mod tests {
             ],
         );
         use super::unsupported::{GRAFCET, LADDER, PL7_2};
-        let expected = [None, None, None, None, Some(LADDER), Some(LADDER), Some(PL7_2), Some(GRAFCET)];
+        let expected = [None, None, None, None, Some(LADDER), Some(PL7_2), Some(PL7_2), Some(GRAFCET)];
         assert_eq!(unsupported(&units), expected);
+    }
+
+    #[test]
+    fn pl7_2_programs() {
+        let units = check(
+            Detected::Pl72,
+            "(* A *)\nLD : PL7-2 - PRL\nRUNG\nLD : PL7-2 - SEQ - X3\n\nRUNG\nLD : PL7-2 - SEQ - X3 --> X4\n\
+             LD : PL7-2 - POST\nLD : PL7-2 - FAST\n",
+            &[
+                ("MAST - PRL", KEYS, "(* A *)\nLD : PL7-2 - PRL\nRUNG\n"),
+                ("MAST - SEQ - X3", KEYS, "LD : PL7-2 - SEQ - X3\n\nRUNG\n"),
+                ("MAST - SEQ - X3 --> X4", KEYS, "LD : PL7-2 - SEQ - X3 --> X4\n"),
+                ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
+                ("FAST - MAIN", KEYS, "LD : PL7-2 - FAST\n"),
+            ],
+        );
+        assert_eq!(unsupported(&units), [Some(super::unsupported::PL7_2); 5]);
+        let units = check(Detected::Pl72, "RUNG\nEND_RUNG\n", &[("MAST - MAIN", KEYS, "RUNG\nEND_RUNG\n")]);
+        assert_eq!(unsupported(&units), [Some(super::unsupported::PL7_2)]);
     }
 
     #[test]
@@ -761,7 +802,9 @@ mod tests {
         ];
         for text in &texts {
             let detected = detect(FileHint { explicit: true, ..FileHint::default() }, text);
-            for detected in [detected, Detected::Step7, Detected::Pasted(Pl7Text::St), Detected::Exchange] {
+            for detected in
+                [detected, Detected::Step7, Detected::Pasted(Pl7Text::St), Detected::Exchange, Detected::Pl72]
+            {
                 let units = split(text, detected, &SplitHint::default());
                 assert_tiles(text, &units);
             }

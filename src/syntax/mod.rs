@@ -12,6 +12,7 @@ mod parser;
 pub mod awl;
 pub mod exchange;
 pub mod pl7;
+pub mod pl72;
 pub mod xref;
 
 pub use kind::SyntaxKind;

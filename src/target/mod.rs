@@ -4,6 +4,7 @@
 
 mod count;
 pub mod pl7;
+pub mod pl72;
 pub mod step7;
 
 use std::fmt;
@@ -58,6 +59,7 @@ pub struct Target {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Controller {
     Pl7(&'static pl7::Processor),
+    Pl72(&'static pl72::Controller, Option<pl72::Version>),
     Step7(&'static step7::Cpu),
 }
 
@@ -79,15 +81,17 @@ impl fmt::Display for UnknownController {
 
 impl std::error::Error for UnknownController {}
 
-/// Reads a name as a configuration gives it: `TSX 37-22`, `TSX 57-353`, `CPU 314`. Case, blanks and hyphens do not matter.
+/// Reads a name as a configuration gives it: `TSX 37-22`, `TSX 57-353`, `TSX 47-20`, `CPU 314`. Case, blanks and hyphens do
+/// not matter.
 impl FromStr for Target {
     type Err = UnknownController;
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
         let key = key(name);
         let of_pl7 = pl7::PROCESSORS.iter().find(|it| self::key(it.name) == key).map(Self::pl7);
+        let of_pl72 = || pl72::CONTROLLERS.iter().find(|it| self::key(it.name) == key).map(Self::of_pl72);
         let of_step7 = || step7::CPUS.iter().find(|it| self::key(it.name) == key).map(Self::step7);
-        of_pl7.or_else(of_step7).ok_or_else(|| UnknownController { name: name.to_owned() })
+        of_pl7.or_else(of_pl72).or_else(of_step7).ok_or_else(|| UnknownController { name: name.to_owned() })
     }
 }
 
@@ -118,6 +122,10 @@ impl Target {
         Self { controller: Some(Controller::Pl7(processor)), ..Self::any(Family::Pl7) }
     }
 
+    fn of_pl72(controller: &'static pl72::Controller) -> Self {
+        Self { controller: Some(Controller::Pl72(controller, None)), ..Self::any(Family::Pl72) }
+    }
+
     fn step7(cpu: &'static step7::Cpu) -> Self {
         Self { controller: Some(Controller::Step7(cpu)), ..Self::any(Family::Step7) }
     }
@@ -135,6 +143,7 @@ impl Target {
     pub fn all_numbered(&self) -> &'static [Numbered] {
         match self.family {
             Family::Pl7 => pl7::NUMBERED,
+            Family::Pl72 => &[],
             Family::Step7 => step7::NUMBERED,
         }
     }
@@ -154,8 +163,12 @@ impl Target {
         let (own, largest) = match self.controller {
             Some(Controller::Pl7(it)) => (it.count(what), pl7::largest_count(what)),
             Some(Controller::Step7(it)) => (it.count(what), step7::largest_count(what)),
-            None if self.family == Family::Pl7 => (None, pl7::largest_count(what)),
-            None => (None, step7::largest_count(what)),
+            Some(Controller::Pl72(..)) => (None, None),
+            None => match self.family {
+                Family::Pl7 => (None, pl7::largest_count(what)),
+                Family::Pl72 => (None, None),
+                Family::Step7 => (None, step7::largest_count(what)),
+            },
         };
         let name = self.controller();
         let (limit, by) = match own.zip(name) {
@@ -181,7 +194,7 @@ impl Target {
     pub fn events(&self) -> Option<Range> {
         match self.family {
             Family::Pl7 => self.processor().and_then(|it| it.events).or(pl7::EVENTS_LARGEST),
-            Family::Step7 => None,
+            Family::Pl72 | Family::Step7 => None,
         }
     }
 
@@ -189,7 +202,7 @@ impl Target {
     pub const fn subroutines(&self) -> Option<Range> {
         match self.family {
             Family::Pl7 => Some(pl7::SUBROUTINES),
-            Family::Step7 => None,
+            Family::Pl72 | Family::Step7 => None,
         }
     }
 
@@ -197,7 +210,7 @@ impl Target {
     pub const fn last_subroutine(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 => Some(pl7::SUBROUTINE_LAST_IN_EDITOR),
-            Family::Step7 => None,
+            Family::Pl72 | Family::Step7 => None,
         }
     }
 
@@ -205,7 +218,7 @@ impl Target {
     pub const fn section_name_length(&self) -> Option<(Limit, Limit)> {
         match self.family {
             Family::Pl7 => Some((pl7::SECTION_NAME_LENGTH, pl7::SECTION_NAME_LENGTH_IN_EDITOR)),
-            Family::Step7 => None,
+            Family::Pl72 | Family::Step7 => None,
         }
     }
 
@@ -242,6 +255,18 @@ impl Target {
         self.processor().map(|it| it.exchanges)
     }
 
+    /// The same controller in a version of its software. Only the documents of PL7-2 distinguish versions.
+    ///
+    /// # Errors
+    /// A text that names no version, for a controller that has versions.
+    pub fn with_version(self, version: Option<&str>) -> Result<Self, pl72::UnknownVersion> {
+        let (Some(Controller::Pl72(controller, _)), Some(version)) = (self.controller, version) else {
+            return Ok(self);
+        };
+        let version = version.parse()?;
+        Ok(Self { controller: Some(Controller::Pl72(controller, Some(version))), ..self })
+    }
+
     pub const fn family(&self) -> Family {
         self.family
     }
@@ -250,6 +275,7 @@ impl Target {
     pub fn controller(&self) -> Option<&'static str> {
         Some(match self.controller? {
             Controller::Pl7(it) => it.name,
+            Controller::Pl72(it, _) => it.name,
             Controller::Step7(it) => it.name,
         })
     }
@@ -257,45 +283,57 @@ impl Target {
     /// Every name that a configuration may give.
     pub fn known() -> impl Iterator<Item = &'static str> {
         let of_pl7 = pl7::PROCESSORS.iter().map(|it| it.name);
-        of_pl7.chain(step7::CPUS.iter().map(|it| it.name))
+        let of_pl72 = pl72::CONTROLLERS.iter().map(|it| it.name);
+        of_pl7.chain(of_pl72).chain(step7::CPUS.iter().map(|it| it.name))
     }
 
     /// The PL7 processor's own table, `None` for another family or an unknown controller.
     pub fn processor(&self) -> Option<&'static pl7::Processor> {
         match self.controller? {
             Controller::Pl7(it) => Some(it),
-            Controller::Step7(_) => None,
+            Controller::Pl72(..) | Controller::Step7(_) => None,
+        }
+    }
+
+    /// What is known of the controller of a PL7-2 program; `None` for another family.
+    pub fn pl72(&self) -> Option<pl72::Model> {
+        match self.controller {
+            Some(Controller::Pl72(controller, version)) => Some(pl72::Model { controller: Some(controller), version }),
+            _ => (self.family == Family::Pl72).then(pl72::Model::default),
         }
     }
 
     /// The S7 CPU's own table, `None` for another family or an unknown controller.
     pub fn cpu(&self) -> Option<&'static step7::Cpu> {
         match self.controller? {
-            Controller::Pl7(_) => None,
+            Controller::Pl7(_) | Controller::Pl72(..) => None,
             Controller::Step7(it) => Some(it),
         }
     }
 
-    /// Deepest nesting of subroutine or block calls. A STEP 7 CPU has its own, so an unknown one has none.
+    /// Deepest nesting of subroutine or block calls. A STEP 7 CPU has its own, so an unknown one has none; PL7-2 has no
+    /// calls.
     pub fn call_depth(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 => Some(pl7::SUBROUTINE_DEPTH),
+            Family::Pl72 => None,
             Family::Step7 => self.cpu()?.call_depth,
         }
     }
 
-    /// Deepest nesting of parentheses in instruction list.
+    /// Deepest nesting of parentheses in instruction list. PL7-2 has no list of its own.
     pub const fn parenthesis_depth(&self) -> Limit {
         match self.family {
-            Family::Pl7 => pl7::PARENTHESIS_DEPTH,
+            Family::Pl7 | Family::Pl72 => pl7::PARENTHESIS_DEPTH,
             Family::Step7 => step7::PARENTHESIS_DEPTH,
         }
     }
 
-    /// Number of labels `%Li`; `None` where labels are names.
+    /// Number of labels `%Li`, `Li`; `None` where labels are names.
     pub const fn label_numbers(&self) -> Option<Range> {
         match self.family {
             Family::Pl7 => Some(pl7::LABELS),
+            Family::Pl72 => Some(pl72::LABELS),
             Family::Step7 => None,
         }
     }
@@ -303,7 +341,7 @@ impl Target {
     /// Longest label, in characters; `None` where labels are numbers.
     pub const fn label_length(&self) -> Option<Limit> {
         match self.family {
-            Family::Pl7 => None,
+            Family::Pl7 | Family::Pl72 => None,
             Family::Step7 => Some(step7::LABEL_LENGTH),
         }
     }
@@ -312,7 +350,7 @@ impl Target {
     pub const fn stack_depth(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 => Some(pl7::STACK_DEPTH),
-            Family::Step7 => None,
+            Family::Pl72 | Family::Step7 => None,
         }
     }
 
@@ -320,6 +358,7 @@ impl Target {
     pub fn watchdog_ms(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 => Some(pl7::WATCHDOG_DEFAULT_MS),
+            Family::Pl72 => Some(pl72::WATCHDOG_MS),
             Family::Step7 => self.cpu()?.watchdog_ms,
         }
     }
@@ -329,9 +368,12 @@ impl Target {
         self.cpu()?.retentive_bytes
     }
 
-    /// How many function blocks of a PL7 symbol (`TM`, `C`, `MN`, `R`, `DR`, `T`) the controller has, the larger series of the
-    /// two if it is unknown. `None` for another symbol or family.
+    /// How many function blocks of a PL7 symbol (`TM`, `C`, `MN`, `R`, `DR`, `T`) or a PL7-2 symbol (`T`, `C`, `M`, `R`, `D`,
+    /// `FC`, `TXT`) the controller has, the most that any has if it is unknown. `None` for another symbol or family.
     pub fn block_count(&self, symbol: &str) -> Option<Limit> {
+        if let Some(model) = self.pl72() {
+            return model.block_count(symbol);
+        }
         if self.family != Family::Pl7 {
             return None;
         }
@@ -358,6 +400,32 @@ mod tests {
             assert_eq!((target(name).controller(), target(name).family()), (Some("CPU 314"), Family::Step7));
         }
         assert_eq!(target("TSX 57-353").controller(), Some("TSX 57-353"));
+        for name in ["TSX 47-J", "tsx47j", "TSX 47 J"] {
+            assert_eq!((target(name).controller(), target(name).family()), (Some("TSX 47-J"), Family::Pl72));
+        }
+    }
+
+    #[test]
+    fn versions_of_controllers_that_have_them() {
+        let with = |name: &str, version| target(name).with_version(version);
+        let version = |it: Result<Target, pl72::UnknownVersion>| it.map(|it| it.pl72().and_then(|it| it.version));
+        assert_eq!(version(with("TSX 27", Some("V3.1"))), Ok(Some(pl72::Version::new(3, 1))));
+        assert_eq!(version(with("TSX 27", None)), Ok(None));
+        assert_eq!(version(with("TSX 27", Some("new"))), Err(pl72::UnknownVersion("new".to_owned())));
+        assert_eq!(with("TSX 37-22", Some("new")), Ok(target("TSX 37-22")));
+        assert_eq!(Target::any(Family::Pl72).pl72(), Some(pl72::Model::default()));
+        assert_eq!((Target::any(Family::Pl7).pl72(), target("CPU 314").pl72()), (None, None));
+    }
+
+    #[test]
+    fn limits_of_pl7_2() {
+        let any = Target::any(Family::Pl72);
+        assert_eq!((any.call_depth(), any.stack_depth(), any.label_length()), (None, None, None));
+        assert_eq!(any.label_numbers().map(|it| (it.contains(0), it.contains(1))), Some((false, true)));
+        assert_eq!(any.watchdog_ms(), Some(Limit::new(150, "PL72:477")));
+        assert_eq!(any.block_count("T").map(|it| it.value), Some(32));
+        assert_eq!(target("TSX 27").block_count("T"), Some(Limit::new(16, "PL72:651-653")));
+        assert_eq!((any.block_count("TM"), any.retentive_bytes(), any.processor()), (None, None, None));
     }
 
     #[test]
@@ -369,7 +437,7 @@ mod tests {
 
     #[test]
     fn unknown_names_list_the_known_ones() {
-        for name in ["TSX 37-99", "", "CPU", "TSX 17-20"] {
+        for name in ["TSX 37-99", "", "CPU", "TSX 17"] {
             let error = name.parse::<Target>().expect_err(name);
             let message = error.to_string();
             assert!(message.contains(&format!("\"{name}\"")) && message.contains("TSX 37-22, "), "{message}");

@@ -3,6 +3,7 @@
 //! **Invariant:** whether two objects share memory is decided by their [`Footprint`]s, never by their spelling.
 
 pub mod pl7;
+pub mod pl72;
 pub mod step7;
 
 use smol_str::SmolStr;
@@ -124,9 +125,9 @@ pub enum Area {
     Outputs,
     PeripheralInputs,
     PeripheralOutputs,
-    /// Siemens M, or PL7 words: `%MW0` covers bits 0 to 15, `%MD0` 0 to 31, `%MB1` 8 to 15.
+    /// Siemens M, or PL7 words: `%MW0` (PL7-2: `W0`) covers bits 0 to 15, `%MD0` 0 to 31, `%MB1` 8 to 15.
     Words,
-    /// PL7 internal bits: `%M7` is bit 7.
+    /// PL7 internal bits: `%M7` (PL7-2: `B7`) is bit 7.
     Bits,
     Constants,
     SystemBits,
@@ -142,9 +143,10 @@ pub enum Area {
     /// Words of the channels of a PL7 module: prefix (`IW`, `QW`, `MW`, `KW`) and address.
     ModuleWords(SmolStr),
     Faults(SmolStr),
-    /// Words of `%NW{network.station}`.
+    /// Words of `%NW{network.station}`; of PL7-2, `COMi,j` of station i in network 0.
     Network(u32, u32),
-    /// Items of one function block: `TM`, `C`, `MN`, `R`, `DR`, `T` and its number.
+    /// Items of one function block: `TM`, `C`, `MN`, `R`, `DR`, `T` and its number; of PL7-2, `T`, `C`, `M`, `R`, `D`, `FC`,
+    /// `TXT`, and the clock's strings `DT` and `DTP`.
     Block(&'static str, u32),
     Timers,
     Counters,

@@ -1,0 +1,258 @@
+//! PL7-2: the lexer of what stands in the blocks of its networks.
+//!
+//! An address with its commas, string length or index is one token whatever it addresses, and whether it is one or not:
+//! `I0,05`, `W5(W10)`, `B0[16]`, `D1,W3`. So is `%MW10.X4`, which a program converted by hand may keep.
+
+use logos::{Lexer, Logos};
+
+use super::{SyntaxKind, Token};
+
+#[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
+enum Lexeme {
+    #[regex(r"[ \t\x0B\x0C\u{85}\u{A0}\u{1680}\u{2000}-\u{200B}\u{2028}\u{2029}\u{202F}\u{205F}\u{3000}\u{FEFF}]+")]
+    Whitespace,
+    #[regex(r"\r\n|\n|\r")]
+    Newline,
+    #[token("(*", comment)]
+    Comment,
+    UnclosedComment,
+    #[token("*)")]
+    Unknown,
+
+    // Words: operations (PL72:1022-1053) and those of the form around the blocks.
+    #[regex(
+        r"[A-Za-z_\u{AA}\u{B5}\u{BA}\u{C0}-\u{D6}\u{D8}-\u{F6}\u{F8}-\u{2AF}\u{370}-\u{52F}][A-Za-z0-9_\u{AA}\u{B5}\u{BA}\u{C0}-\u{D6}\u{D8}-\u{F6}\u{F8}-\u{2AF}\u{300}-\u{52F}]*"
+    )]
+    // `SLC3`, `SRC3` as PL72:1964 prints them: an operation and its number of bits.
+    #[regex(r"(?i:SLC|SRC)[0-9]+", priority = 40)]
+    Ident,
+    #[regex(r"[0-9]+")]
+    Number,
+    // PL72:981-983. The closing quote may be missing: the grammar says so.
+    #[regex(r"[LlHhMm]'[^'\r\n]*'?")]
+    TypedConstant,
+    #[regex(r"%?[A-Za-z][A-Za-z]?[A-Za-z]?[0-9]+", address, priority = 20)]
+    #[regex(r"(?i:FC|DT|DTP)", address, priority = 20)]
+    ObjectAddress,
+    #[regex(r"%?[Ll][0-9]+", priority = 30)]
+    LabelAddress,
+
+    #[token("!")]
+    Bang,
+    #[token("%")]
+    Percent,
+    #[token(":")]
+    Colon,
+    #[token(";")]
+    Semicolon,
+    #[token(",")]
+    Comma,
+    #[token(".")]
+    Dot,
+    #[token("(")]
+    LParen,
+    #[token(")")]
+    RParen,
+    #[token("[")]
+    LBrack,
+    #[token("]")]
+    RBrack,
+    #[token("=")]
+    Eq,
+    #[token("<>")]
+    Ne,
+    #[token("<")]
+    Lt,
+    // PL72:957 prints a blank inside.
+    #[regex(r"<[ \t]*=")]
+    Le,
+    #[token(">")]
+    Gt,
+    #[regex(r">[ \t]*=")]
+    Ge,
+    #[token("+")]
+    Plus,
+    #[token("-")]
+    Minus,
+    #[token("*")]
+    Star,
+    #[token("/")]
+    Slash,
+    #[regex(r"-->|->|\u{2192}")]
+    Arrow,
+}
+
+macro_rules! same_names {
+    ($($name:ident)*) => {
+        impl From<Lexeme> for SyntaxKind {
+            fn from(lexeme: Lexeme) -> Self {
+                match lexeme { $(Lexeme::$name => Self::$name),* }
+            }
+        }
+    };
+}
+
+same_names! {
+    Whitespace Newline Comment UnclosedComment Unknown Ident Number TypedConstant ObjectAddress LabelAddress Bang Percent
+    Colon Semicolon Comma Dot LParen RParen LBrack RBrack Eq Ne Lt Le Gt Ge Plus Minus Star Slash Arrow
+}
+
+/// A comment ends at the first `*)`.
+fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
+    let rest = lexer.remainder();
+    match memchr::memmem::find(rest.as_bytes(), b"*)") {
+        Some(inner) => {
+            lexer.bump(inner + 2);
+            Lexeme::Comment
+        }
+        None => {
+            lexer.bump(rest.len());
+            Lexeme::UnclosedComment
+        }
+    }
+}
+
+/// Takes what belongs to an address after its number: at most two items, then a length or an index.
+///
+/// A comma also separates the cells of a network, so an item is taken only where it is a whole word that can be one.
+fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
+    let is_drum = matches!(lexer.slice().as_bytes(), [b'D' | b'd', digit, ..] if digit.is_ascii_digit());
+    let rest = lexer.remainder().as_bytes();
+    let mut end = 0;
+    for _ in 0..2 {
+        let Some((b',' | b'.' | b':', tail)) = rest.get(end..).and_then(<[u8]>::split_first) else { break };
+        let length = tail.iter().take_while(|it| it.is_ascii_alphanumeric() || **it == b'_').count();
+        let is_item = match tail.get(..length).unwrap_or_default() {
+            [_] | [b'0'..=b'9', b'0'..=b'9'] | [b'X' | b'x', b'0'..=b'9'] => true,
+            [b'X' | b'x', b'0'..=b'9', b'0'..=b'9'] => true,
+            [b'W' | b'w', digits @ ..] => is_drum && digits.len() < 3 && digits.iter().all(u8::is_ascii_digit),
+            _ => false,
+        };
+        if !is_item {
+            break;
+        }
+        end += 1 + length;
+    }
+    let close = match rest.get(end) {
+        Some(b'[') => b']',
+        Some(b'(') => b')',
+        _ => 0,
+    };
+    if close != 0 {
+        let inner = rest.get(end + 1..).unwrap_or_default();
+        let length = inner.iter().take_while(|it| it.is_ascii_alphanumeric()).count();
+        if length > 0 && inner.get(length) == Some(&close) {
+            end += length + 2;
+        }
+    }
+    lexer.bump(end);
+    Lexeme::ObjectAddress
+}
+
+/// The tokens of the content of a block. Their lengths add up to the text, for every text.
+pub fn lex(text: &str) -> Vec<Token> {
+    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4 + 1);
+    let mut lexer = Lexeme::lexer(text);
+    while let Some(lexeme) = lexer.next() {
+        let kind = lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from);
+        let len = u32::try_from(lexer.slice().len()).unwrap_or(u32::MAX);
+        match tokens.last_mut() {
+            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
+            _ => tokens.push(Token { kind, len }),
+        }
+    }
+    tokens
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use SyntaxKind::*;
+
+    fn kinds(text: &str) -> Vec<SyntaxKind> {
+        lex(text).iter().map(|it| it.kind).filter(|it| *it != Whitespace).collect()
+    }
+
+    /// Every form of address of PL72:253-310 and of the pages of the blocks is one token.
+    #[test]
+    fn addresses_are_one_token() {
+        for text in [
+            "I0,05", "O1,3", "I01,B", "O17,F", "O2,S", "S1,3", "B12", "B5[10]", "O0,00[8]", "I1,0[16]", "SY21", "X3",
+            "X3,V", "W5", "W5,A", "W0[60]", "W5(W10)", "CW10(W0)", "CW7,F", "SW16", "COM2,1", "COM2,1,A", "IW1,3",
+            "IW01,3,F", "T0", "T0,P", "C1,E", "M2,R", "R0,F", "D1,F", "D1,W15", "TXT0,L", "FC", "FC,P", "DT", "DTP",
+            "w5(w10)", "%MW10.X4", "%M5", "I0.05", "W5:X12", "T0.D",
+        ] {
+            let len = u32::try_from(text.len()).unwrap();
+            assert_eq!(lex(text), [Token { kind: ObjectAddress, len }], "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_part_of_an_address() {
+        assert_eq!(kinds("B5,H_LINK(2)"), [ObjectAddress, Comma, Ident, LParen, Number, RParen]);
+        assert_eq!(kinds("W1,W2"), [ObjectAddress, Comma, ObjectAddress]);
+        assert_eq!(kinds("I0,05),COIL(B1)"), [ObjectAddress, RParen, Comma, Ident, LParen, ObjectAddress, RParen]);
+        assert_eq!(kinds("COM1,2,3,4"), [ObjectAddress, Comma, Number]);
+        assert_eq!(kinds("W5(W1 + 2)"), [ObjectAddress, LParen, ObjectAddress, Plus, Number, RParen]);
+        assert_eq!(kinds("W5 (W1)"), [ObjectAddress, LParen, ObjectAddress, RParen]);
+        assert_eq!(kinds("W5()"), [ObjectAddress, LParen, RParen]);
+        assert_eq!(kinds("B5x FCX DTA T"), [Ident, Ident, Ident, Ident]);
+        assert_eq!(kinds("W5:=3"), [ObjectAddress, Colon, Eq, Number]);
+        assert_eq!(kinds("L10: %L999"), [LabelAddress, Colon, LabelAddress]);
+    }
+
+    /// The examples of PL72:1023-1109.
+    #[test]
+    fn operations() {
+        let operation = [ObjectAddress, Plus, ObjectAddress, Arrow, ObjectAddress];
+        for text in ["W1 + W2 -> W3", "W1+W2->W3", "W1 + W2 → W3", "W1 + W2 --> W3"] {
+            assert_eq!(kinds(text), operation, "{text}");
+        }
+        assert_eq!(kinds("127 -> W10"), [Number, Arrow, ObjectAddress]);
+        assert_eq!(kinds("-5 -> T1,P"), [Minus, Number, Arrow, ObjectAddress]);
+        for text in ["I1,0[16] -> W4(W50)", "W512[60] -> W0[60]", "CW10(W0) -> W10(W1)", "W3->O4,5[5]"] {
+            assert_eq!(kinds(text), [ObjectAddress, Arrow, ObjectAddress], "{text}");
+        }
+        for (text, sign) in [("*", Star), ("/", Slash), ("-", Minus), ("REM", Ident), ("XOR", Ident)] {
+            let text = format!("W1 {text} H'524D' -> OW1,3");
+            assert_eq!(kinds(&text), [ObjectAddress, sign, TypedConstant, Arrow, ObjectAddress], "{text}");
+        }
+        assert_eq!(kinds("BTA W0 -> W10"), [Ident, ObjectAddress, Arrow, ObjectAddress]);
+        assert_eq!(kinds("SLC 3 W1 -> W1"), [Ident, Number, ObjectAddress, Arrow, ObjectAddress]);
+        assert_eq!(kinds("src15 W1->W1"), [Ident, ObjectAddress, Arrow, ObjectAddress]);
+        assert_eq!(kinds("L'1010' M'MR' h'5' L'1"), [TypedConstant; 4]);
+    }
+
+    /// PL72:957.
+    #[test]
+    fn comparisons() {
+        for (sign, kind) in
+            [(">", Gt), ("<", Lt), ("=", Eq), (">=", Ge), ("> =", Ge), ("<=", Le), ("< =", Le), ("<>", Ne)]
+        {
+            assert_eq!(kinds(&format!("W5 {sign} 10")), [ObjectAddress, kind, Number], "{sign}");
+        }
+    }
+
+    #[test]
+    fn comments_and_unknown_characters() {
+        assert_eq!(kinds("(* a (* b *) W1"), [Comment, ObjectAddress]);
+        assert_eq!(kinds("W1 (* open"), [ObjectAddress, UnclosedComment]);
+        assert_eq!(kinds("§§ \"\r\n*)"), [Unknown, Unknown, Newline, Unknown]);
+    }
+
+    proptest! {
+        #[test]
+        fn tokens_tile_the_text(text in r"([IOBWCTMRDX%L][0-9]{1,3}|[,.:()\[\]'W]|[a-zé→]|->|\(\*|\*\)| |\n|\PC){0,24}") {
+            let tokens = lex(&text);
+            let mut at = 0;
+            for token in &tokens {
+                prop_assert!(token.len > 0);
+                at += token.len as usize;
+                prop_assert!(text.is_char_boundary(at));
+            }
+            prop_assert_eq!(at, text.len());
+        }
+    }
+}

@@ -1,0 +1,566 @@
+//! TSX 17-20, TSX 27 and TSX 47, programmed with PL7-2.
+//!
+//! The document tells controllers apart by [`Series`], software by [`Release`]. Where the controller or its version is not
+//! known, a [`Model`] has all releases that it may be, and a question about it gets the answer of the most capable one.
+
+mod block;
+mod channel;
+mod cost;
+mod operation;
+mod release;
+mod system;
+
+pub use block::{
+    BLOCKS, Block, BlockKind, CLOCK_DAYS, CLOCK_WORDS, COUNTER_VALUES, COUPLER_ADDRESSES, COUPLER_POSITIONS, DAYS,
+    DRUM_ORDER_BITS, DRUM_STEP, DRUM_STEPS, DRUM_TIME, FAST_TIMER_MAX_US, FAST_TIMER_MIN_US, MINUTES, PRESETS, Pin,
+    REGISTER_LENGTH, SIMPLE_TEXTS, STOP_CODES, SimpleText, TEXT_BYTES, TEXT_ERRORS, TEXT_KINDS, TEXT_LENGTH_SIMPLE,
+    TEXT_NUMBER_BYTES, TEXT_PARTNERS, TEXT_PARTNERS_PL7_2, TEXT_STATIONS, TEXT_TABLE_START, TIME_BASES_MS, TextError,
+    TextKind, UNI_TELWAY_ADDRESSES, UNI_TELWAY_REQUEST,
+};
+pub use channel::{
+    Channels, EXTENSIONS_17, Misfit, Modules, RUN_STOP_INPUT, SECURITY_OUTPUT, UNITS_17, Unit17, UnitKind,
+};
+pub use cost::{
+    COSTS, Cost, Element, InstructionCost, NETWORK_COMMENT_BYTES, SKIPPED_OPERATION, SYSTEM_COSTS, SystemCost,
+    SystemTask, TimeRange, Triggered,
+};
+pub use operation::{
+    ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARISONS, OPERATIONS, Operand, OperandRange,
+    Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
+};
+pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
+pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
+
+use super::{Limit, Range};
+
+/// Watchdog of the master task, which is not periodic, in milliseconds (also PL72:534).
+pub const WATCHDOG_MS: Limit = Limit::new(150, "PL72:477");
+
+/// Labels of networks; each network has one.
+pub const LABELS: Range = Range::new(1, 999, "PL72:600");
+/// Jumps to labels in a program.
+pub const JUMPS: Limit = Limit::new(42, "PL72:418");
+/// Characters of the comment of a network, an action or a receptivity (also PL72:1425, PL72:1481).
+pub const COMMENT_LENGTH: Limit = Limit::new(15, "PL72:601");
+/// Lines of a network, and contacts in a line of its test zone.
+pub const LADDER_LINES: Limit = Limit::new(4, "PL72:606");
+pub const LADDER_CONTACTS: Limit = Limit::new(9, "PL72:606");
+/// Coils of a network, one a line.
+pub const LADDER_COILS: Limit = Limit::new(4, "PL72:607");
+
+/// `Wi` and `CWi` that an instruction reaches directly; the others, by transfer of a table alone.
+pub const DIRECT_WORDS: Range = Range::new(0, 127, "PL72:289");
+/// Words of a page of the memory of `Wi` or `CWi` (PL72:1092-1101).
+pub const PAGE_WORDS: Limit = Limit::new(128, "PL72:1094-1101");
+/// Pages of `Wi` or `CWi`.
+pub const PAGES: Limit = Limit::new(8, "PL72:1092");
+/// Words that can be indexed.
+pub const INDEXED_WORDS: Range = Range::new(0, 127, "PL72:994");
+
+/// Pages of a chart, P0 to P7.
+pub const CHART_PAGES: Limit = Limit::new(8, "PL72:1346-1347");
+pub const CHART_COLUMNS: Limit = Limit::new(8, "PL72:1341");
+/// In one column of a page.
+pub const COLUMN_STEPS: Limit = Limit::new(6, "PL72:1342");
+pub const COLUMN_TRANSITIONS: Limit = Limit::new(6, "PL72:1343");
+pub const COLUMN_ORIGINS: Limit = Limit::new(1, "PL72:1344");
+pub const COLUMN_DESTINATIONS: Limit = Limit::new(1, "PL72:1345");
+/// Steps of a chart, the initial ones included.
+pub const STEPS: Limit = Limit::new(96, "PL72:1407");
+pub const STEP_NUMBERS: Range = Range::new(0, 95, "PL72:1409");
+pub const INITIAL_STEPS: Limit = Limit::new(16, "PL72:1407");
+pub const ACTIVE_STEPS: Limit = Limit::new(16, "PL72:1413");
+pub const TRANSITIONS: Limit = Limit::new(128, "PL72:1471");
+pub const VALID_TRANSITIONS: Limit = Limit::new(24, "PL72:1471");
+/// Connectors of each kind (also PL72:428-429).
+pub const DESTINATION_CONNECTORS: Limit = Limit::new(42, "PL72:1393");
+pub const ORIGIN_CONNECTORS: Limit = Limit::new(42, "PL72:1397");
+/// Transitions after an OR divergence, and before an OR convergence.
+pub const OR_BRANCHES_OUT: Limit = Limit::new(4, "PL72:1373");
+pub const OR_BRANCHES_IN: Limit = Limit::new(4, "PL72:1374");
+/// Steps after an AND divergence, and before an AND convergence.
+pub const AND_BRANCHES_OUT: Limit = Limit::new(4, "PL72:1382");
+pub const AND_BRANCHES_IN: Limit = Limit::new(4, "PL72:1383");
+/// Actions of a step that are programmed in the step itself.
+pub const STEP_ACTIONS: Limit = Limit::new(4, "PL72:1428");
+/// Times of steps, in seconds (also PL72:1793).
+pub const STEP_TIMES_S: Range = Range::new(0, 9999, "PL72:1451");
+
+/// The fast task of TSX 27 and TSX 47, which is periodic: what one setting of SY03 makes of it (PL72:547-549).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FastTask {
+    /// State of SY03.
+    pub sy03: bool,
+    pub period_ms: Limit,
+    /// Longest execution that leaves the controller working as it should.
+    pub duration_us: Limit,
+    pub networks: Limit,
+    /// Not with an intelligent coupler or a TELWAY coupler in the configuration of a TSX 47-20 (PL72:553).
+    pub excludes_couplers: bool,
+}
+
+pub static FAST_TASKS: &[FastTask] = &[
+    FastTask {
+        sy03: true,
+        period_ms: Limit::new(5, "PL72:548"),
+        duration_us: Limit::new(1_000, "PL72:548"),
+        networks: Limit::new(10, "PL72:548"),
+        excludes_couplers: true,
+    },
+    FastTask {
+        sy03: false,
+        period_ms: Limit::new(10, "PL72:549"),
+        duration_us: Limit::new(2_000, "PL72:549"),
+        networks: Limit::new(20, "PL72:549"),
+        excludes_couplers: false,
+    },
+];
+
+/// Channels that the fast task of a controller may own. The fast task shares its outputs with the master task (PL72:522,
+/// PL72:563).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FastTaskChannels {
+    /// One byte of inputs and one byte of outputs of the base unit, each configured: first channel of each choice.
+    Bytes { inputs: &'static [u32], outputs: &'static [u32], source: &'static str },
+    /// Always these two modules.
+    Modules { input: u32, output: u32, source: &'static str },
+    /// That many modules, configured.
+    Configured { modules: Limit },
+}
+
+/// The columns of most tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Series {
+    Tsx17,
+    Tsx27,
+    Tsx47,
+}
+
+impl Series {
+    pub const ALL: [Self; 3] = [Self::Tsx17, Self::Tsx27, Self::Tsx47];
+
+    pub const fn fast_task_channels(self) -> FastTaskChannels {
+        match self {
+            Self::Tsx17 => FastTaskChannels::Bytes { inputs: &[0, 8, 16], outputs: &[0, 8], source: "PL72:520" },
+            Self::Tsx27 => FastTaskChannels::Modules { input: 1, output: 0, source: "PL72:559" },
+            Self::Tsx47 => FastTaskChannels::Configured { modules: Limit::new(2, "PL72:561") },
+        }
+    }
+
+    const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// Objects of coils that keep their state at a warm start, where the configuration says so (PL72:410-412).
+pub const SAVED_COILS: [Kind; 2] = [Kind::Output, Kind::Bit];
+
+/// Kinds of objects that the tables count (PL72:255-310).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    Input,
+    Output,
+    EventInput,
+    /// `Bi`.
+    Bit,
+    /// `SYi`.
+    SystemBit,
+    /// `Xi`.
+    Step,
+    /// `Sx,j`.
+    ModuleFault,
+    /// `Ixy,S`.
+    InputFault,
+    /// `Oy,S`, `Oxy,S`.
+    OutputFault,
+    /// `Wi`.
+    Word,
+    /// `CWi`.
+    Constant,
+    /// `SWi`.
+    SystemWord,
+    /// `COMi,j`.
+    CommonWord,
+    /// `Xi,V`.
+    StepTime,
+    InputWord,
+    OutputWord,
+    WordBit,
+    ConstantBit,
+    SystemWordBit,
+    CommonWordBit,
+    InputWordBit,
+    OutputWordBit,
+}
+
+/// How many objects of a kind there are; 0 where there are none.
+#[derive(Debug, PartialEq, Eq)]
+pub struct ObjectCount {
+    pub kind: Kind,
+    /// By series: TSX 17-20, TSX 27, TSX 47.
+    pub counts: [u32; 3],
+    pub source: &'static str,
+}
+
+const fn count(kind: Kind, counts: [u32; 3], source: &'static str) -> ObjectCount {
+    ObjectCount { kind, counts, source }
+}
+
+/// PL72:255-310. Of words and constants this is the most; [`Release`] has the count of each version.
+pub static OBJECT_COUNTS: &[ObjectCount] = &[
+    count(Kind::Input, [96, 48, 256], "PL72:257-259"),
+    count(Kind::Output, [64, 32, 256], "PL72:258-260"),
+    count(Kind::EventInput, [2, 0, 0], "PL72:261-262"),
+    count(Kind::Bit, [256; 3], "PL72:263"),
+    count(Kind::SystemBit, [24; 3], "PL72:264"),
+    count(Kind::Step, [96; 3], "PL72:266"),
+    count(Kind::ModuleFault, [4 * 8, 0, 0], "PL72:267"),
+    count(Kind::InputFault, [0, 0, 16], "PL72:269"),
+    count(Kind::OutputFault, [0, 4, 16], "PL72:268-270"),
+    count(Kind::Word, [1024, 128, 1024], "PL72:276"),
+    count(Kind::Constant, [1024; 3], "PL72:277"),
+    count(Kind::SystemWord, [64, 0, 4], "PL72:278"),
+    count(Kind::CommonWord, [16 * 4, 0, 16 * 4], "PL72:279-280"),
+    count(Kind::StepTime, [96; 3], "PL72:283"),
+    count(Kind::InputWord, [4 * 8, 0, 4 * 8], "PL72:284-286"),
+    count(Kind::OutputWord, [4 * 8, 0, 4 * 8], "PL72:285-287"),
+    count(Kind::WordBit, [128 * 16; 3], "PL72:301"),
+    count(Kind::ConstantBit, [128 * 16; 3], "PL72:302"),
+    count(Kind::SystemWordBit, [64 * 16, 0, 4 * 16], "PL72:303-304"),
+    count(Kind::CommonWordBit, [64 * 16, 0, 64 * 16], "PL72:305-306"),
+    count(Kind::InputWordBit, [32 * 16, 0, 32 * 16], "PL72:307-309"),
+    count(Kind::OutputWordBit, [32 * 16, 0, 32 * 16], "PL72:308-310"),
+];
+
+/// A controller as a configuration names it.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Controller {
+    pub name: &'static str,
+    pub series: Series,
+    pub channels: &'static Channels,
+    /// Oldest first.
+    pub releases: &'static [&'static Release],
+}
+
+pub static CONTROLLERS: &[Controller] = &[
+    Controller {
+        name: "TSX 17-20",
+        series: Series::Tsx17,
+        channels: &channel::CHANNELS_17,
+        releases: &[&release::TSX_17_20],
+    },
+    Controller {
+        name: "TSX 27",
+        series: Series::Tsx27,
+        channels: &channel::CHANNELS_27,
+        releases: &[&release::TSX_27_V2, &release::TSX_27_V3],
+    },
+    Controller {
+        name: "TSX 47-J",
+        series: Series::Tsx47,
+        channels: &channel::CHANNELS_47_J,
+        releases: &[&release::TSX_47_V2, &release::TSX_47_10_V3],
+    },
+    Controller {
+        name: "TSX 47-10",
+        series: Series::Tsx47,
+        channels: &channel::CHANNELS_47_10,
+        releases: &[&release::TSX_47_V2, &release::TSX_47_10_V3],
+    },
+    Controller {
+        name: "TSX 47-20",
+        series: Series::Tsx47,
+        channels: &channel::CHANNELS_47_20,
+        releases: &[&release::TSX_47_V2, &release::TSX_47_20_V3, &release::TSX_47_20_V4],
+    },
+];
+
+/// A controller and its version, each as far as it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Model {
+    pub controller: Option<&'static Controller>,
+    /// Says nothing without a controller: versions of different controllers do not compare.
+    pub version: Option<Version>,
+}
+
+impl Model {
+    /// What the software may be; at least one release.
+    pub fn releases(&self) -> impl Iterator<Item = &'static Release> {
+        let (all, version) = match self.controller {
+            Some(controller) => (controller.releases, self.version),
+            None => (RELEASES.as_slice(), None),
+        };
+        let is_meant = move |it: &&'static Release| {
+            version.is_none_or(|version| it.from <= version && it.before.is_none_or(|next| version < next))
+        };
+        all.iter().copied().filter(is_meant)
+    }
+
+    /// What the controller may be.
+    pub fn series(&self) -> impl Iterator<Item = Series> {
+        let own = self.controller.map(|it| it.series);
+        Series::ALL.into_iter().filter(move |it| own.is_none_or(|own| own == *it))
+    }
+
+    /// Whether the software has a feature.
+    pub fn has(&self, feature: Feature) -> bool {
+        self.releases().any(|it| it.features.contains(&feature))
+    }
+
+    /// What a feature needs beside the controller, where every release that has it needs something.
+    pub fn condition(&self, feature: Feature) -> Option<Condition> {
+        let mut found = None;
+        for release in self.releases().filter(|it| it.features.contains(&feature)) {
+            found = Some(*release.conditions.iter().find(|it| it.feature == feature)?);
+        }
+        found
+    }
+
+    /// How many objects of a kind there are: 0 where the controller has none.
+    pub fn count(&self, kind: Kind) -> Limit {
+        let by_release = |count: fn(&Release) -> Limit| self.releases().map(count).max_by_key(|it| it.value);
+        let by_release = match kind {
+            Kind::Word => by_release(|it| it.words),
+            Kind::Constant => by_release(|it| it.constants),
+            _ => None,
+        };
+        by_release.unwrap_or_else(|| {
+            let row = OBJECT_COUNTS.iter().find(|it| it.kind == kind);
+            let count = row.map(|it| self.series().map(|series| it.counts[series.index()]).max().unwrap_or(0));
+            Limit::new(count.unwrap_or(0), row.map_or("", |it| it.source))
+        })
+    }
+
+    /// How many blocks there are of a symbol (`T`, `C`, `M`, `R`, `D`, `FC`, `TXT`).
+    pub fn block_count(&self, symbol: &str) -> Option<Limit> {
+        let rows = BLOCKS.iter().filter(|it| it.symbol == Some(symbol));
+        rows.flat_map(|row| self.series().filter_map(|it| row.count(it))).max_by_key(|it| it.value)
+    }
+
+    /// Where inputs and outputs may be; `None` where the controller is not known.
+    pub fn channels(&self) -> Option<&'static Channels> {
+        self.controller.map(|it| it.channels)
+    }
+
+    /// Whether a system bit has a function. `None` where no row of the table is about it.
+    pub fn has_system_bit(&self, number: u32) -> Option<bool> {
+        self.has_system_object(SYSTEM_BITS, number)
+    }
+
+    /// Whether a system word has a function. `None` where no row of the table is about it.
+    pub fn has_system_word(&self, number: u32) -> Option<bool> {
+        self.has_system_object(SYSTEM_WORDS, number)
+    }
+
+    fn has_system_object(&self, rows: &'static [SystemObject], number: u32) -> Option<bool> {
+        let version = self.controller.and(self.version);
+        let mut rows = rows.iter().filter(|it| it.number == number).peekable();
+        rows.peek()?;
+        Some(rows.any(|row| {
+            self.series().any(|series| {
+                row.since[series.index()].is_some_and(|since| version.is_none_or(|version| since <= version))
+            })
+        }))
+    }
+
+    /// Time and size of an element of a program: the longest of what the controller may be. `None` where it has none.
+    pub fn time(&self, element: Element, quantity: u32) -> Option<TimeRange> {
+        let row = COSTS.iter().find(|it| it.element == element)?;
+        self.series().filter_map(|series| row.time(series)).map(|it| it.range(quantity)).reduce(TimeRange::worse)
+    }
+
+    /// Whether an operation is one of the controller's.
+    pub fn has_operation(&self, operation: &Operation) -> bool {
+        let has_feature = operation.feature.is_none_or(|it| self.has(it));
+        has_feature && self.series().any(|series| operation.series.contains(&series))
+    }
+
+    /// Range of the operands of an operation, the widest of what the controller may be.
+    pub fn operand_range(&self, operation: &Operation) -> Option<OperandRange> {
+        self.series()
+            .filter_map(|series| operation.range(series))
+            .max_by_key(|it| i64::from(it.last) - i64::from(it.first))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::Target;
+
+    fn model(name: &str, version: Option<&str>) -> Model {
+        let target: Target = name.parse().unwrap_or_else(|error| panic!("{error}"));
+        let target = target.with_version(version).unwrap_or_else(|error| panic!("{error}"));
+        target.pl72().unwrap_or_else(|| panic!("{name} is not programmed with PL7-2"))
+    }
+
+    #[test]
+    fn every_controller_is_exactly_one_release_in_each_version() {
+        for controller in CONTROLLERS {
+            for (major, minor) in [(0, 0), (2, 9), (3, 0), (3, 1), (4, 0), (9, 0)] {
+                let version = Some(Version::new(major, minor));
+                let found = Model { controller: Some(controller), version }.releases().count();
+                assert_eq!(found, 1, "{} V{major}.{minor}", controller.name);
+            }
+            assert!(controller.releases.iter().all(|it| it.series == controller.series), "{}", controller.name);
+        }
+        assert_eq!(Model::default().releases().count(), 7);
+        assert_eq!(Model { controller: None, version: Some(Version::new(4, 0)) }.releases().count(), 7);
+    }
+
+    /// The table of PL72:571-585, row by row.
+    #[test]
+    fn features() {
+        let columns = [
+            ("TSX 27", "V2"),
+            ("TSX 27", "V3"),
+            ("TSX 47-10", "V2"),
+            ("TSX 47-J", "V3"),
+            ("TSX 47-20", "V3"),
+            ("TSX 47-20", "V4"),
+            ("TSX 17-20", "V3"),
+        ];
+        let table = [
+            (Feature::PeriodicFastTask, ".*.***."),
+            (Feature::EventFastTask, "......*"),
+            (Feature::WordBits, ".*.****"),
+            (Feature::WordTables, ".*.****"),
+            (Feature::AsciiConversion, ".*.****"),
+            (Feature::SimpleText, "*.*...."),
+            (Feature::CompleteText, ".*.****"),
+            (Feature::Network, "..*****"),
+            (Feature::UniTelway, ".....**"),
+            (Feature::Couplers, "....***"),
+        ];
+        assert_eq!(table.map(|it| it.0), Feature::ALL);
+        for (feature, row) in table {
+            let found: String = columns
+                .iter()
+                .map(|&(name, version)| if model(name, Some(version)).has(feature) { '*' } else { '.' })
+                .collect();
+            assert_eq!(found, row, "{feature:?}");
+        }
+        let words = columns.map(|(name, version)| model(name, Some(version)).count(Kind::Word));
+        assert_eq!(words.map(|it| it.value), [128, 128, 128, 1024, 1024, 1024, 1024]);
+        assert!(words.iter().all(|it| it.source == "PL72:577"));
+        let constants = columns.map(|(name, version)| model(name, Some(version)).count(Kind::Constant).value);
+        assert_eq!(constants, [128, 1024, 128, 1024, 1024, 1024, 1024]);
+        let lock = columns.map(|(name, version)| model(name, Some(version)).releases().next().and_then(|it| it.lock));
+        use LockAction::{ColdStart, WarmStart};
+        let cold = Some(ColdStart);
+        let warm = Some(WarmStart);
+        assert_eq!(lock, [cold, cold, cold, warm, warm, warm, None]);
+    }
+
+    #[test]
+    fn conditions_of_features() {
+        let text = |name, version, feature| model(name, version).condition(feature).map(|it| it.source);
+        assert_eq!(text("TSX 17-20", None, Feature::Network), Some("PL72:588"));
+        assert_eq!(text("TSX 17-20", None, Feature::Couplers), Some("PL72:594"));
+        assert_eq!(text("TSX 17-20", None, Feature::WordBits), None);
+        assert_eq!(text("TSX 47-20", Some("V4"), Feature::UniTelway), Some("PL72:590"));
+        assert_eq!(text("TSX 47-20", Some("V3"), Feature::UniTelway), None);
+        assert_eq!(Model::default().condition(Feature::Network), None);
+        assert!(Model::default().condition(Feature::UniTelway).is_some());
+    }
+
+    #[test]
+    fn an_unknown_version_has_what_any_has() {
+        let any = model("TSX 27", None);
+        assert!(any.has(Feature::SimpleText) && any.has(Feature::CompleteText) && !any.has(Feature::Couplers));
+        assert_eq!((any.count(Kind::Word).value, any.count(Kind::Constant).value), (128, 1024));
+        let unknown = Model::default();
+        assert_eq!((unknown.count(Kind::Word).value, unknown.count(Kind::Input).value), (1024, 256));
+        assert!(Feature::ALL.into_iter().all(|it| unknown.has(it)));
+    }
+
+    #[test]
+    fn counts_of_objects_and_blocks() {
+        let models = ["TSX 17-20", "TSX 27", "TSX 47-20"].map(|it| model(it, Some("V3")));
+        let counts = |kind| models.map(|it| it.count(kind).value);
+        assert_eq!(counts(Kind::Input), [96, 48, 256]);
+        assert_eq!(counts(Kind::Output), [64, 32, 256]);
+        assert_eq!(counts(Kind::EventInput), [2, 0, 0]);
+        assert_eq!(counts(Kind::SystemWord), [64, 0, 4]);
+        assert_eq!(counts(Kind::CommonWord), [64, 0, 64]);
+        assert_eq!(counts(Kind::ModuleFault), [32, 0, 0]);
+        assert_eq!(counts(Kind::OutputFault), [0, 4, 16]);
+        assert_eq!(counts(Kind::OutputWord), [32, 0, 32]);
+        assert_eq!(counts(Kind::SystemWordBit), [1024, 0, 64]);
+        let blocks = |symbol| models.map(|it| it.block_count(symbol).map(|it| it.value));
+        assert_eq!(blocks("T"), [Some(32), Some(16), Some(16)]);
+        assert_eq!(blocks("C"), [Some(31), Some(16), Some(16)]);
+        assert_eq!(blocks("M"), [Some(8); 3]);
+        assert_eq!(blocks("R"), [Some(4); 3]);
+        assert_eq!(blocks("D"), [Some(8); 3]);
+        assert_eq!(blocks("FC"), [Some(1), Some(0), Some(0)]);
+        assert_eq!(blocks("TXT"), [Some(8); 3]);
+        assert_eq!(blocks("TM"), [None; 3]);
+        let mut kinds: Vec<_> = OBJECT_COUNTS.iter().map(|it| it.kind).collect();
+        let rows = kinds.len();
+        kinds.sort_unstable();
+        kinds.dedup();
+        assert_eq!(kinds.len(), rows);
+    }
+
+    #[test]
+    fn channels() {
+        let channels = |name| model(name, None).channels().unwrap_or_else(|| panic!("{name}"));
+        let small = channels("TSX 27");
+        let modules = |it: &Modules| (0..9).filter(|&module| it.contains(module)).collect::<Vec<_>>();
+        assert_eq!(modules(&small.input_modules), [1, 3, 5, 7]);
+        assert_eq!(modules(&small.output_modules), [0, 2, 4, 6]);
+        // As many as the table of objects counts.
+        assert_eq!((4 * (small.inputs.last + 1), 4 * (small.outputs.last + 1)), (48, 32));
+        let large = channels("TSX 47-20");
+        assert_eq!(large.racks.map(|it| it.last), Some(1));
+        assert_eq!(2 * 8 * (large.inputs.last + 1), 256);
+        let compact = channels("TSX 47-J");
+        assert_eq!((compact.racks.map(|it| it.last), compact.input_modules.range.last), (Some(0), 4));
+        assert_eq!((compact.words, channels("TSX 47-10").words), (None, None));
+        assert_eq!(large.word_modules.map(|it| (it.first, it.last)), Some((0, 3)));
+        let micro = channels("TSX 17-20");
+        assert_eq!(4 * (micro.inputs.last + 1), 96);
+        assert_eq!(micro.word_modules.map(|it| (it.first, it.last)), Some((1, 3)));
+        assert_eq!(Model::default().channels(), None);
+        assert_eq!(micro.misfit(false, None, 0, 25), None);
+        assert!(matches!(micro.misfit(false, None, 1, 25), Some(Misfit::Channel(it)) if it.last == 23));
+        assert!(matches!(micro.misfit(true, None, 4, 0), Some(Misfit::Module(it)) if it.range.last == 3));
+        assert_eq!(micro.misfit(true, Some(0), 1, 0), Some(Misfit::NoRacks));
+        assert_eq!((small.misfit(true, None, 2, 7), small.misfit(false, None, 1, 0xB)), (None, None));
+        assert!(matches!(small.misfit(false, None, 2, 0), Some(Misfit::Module(_))));
+        assert!(matches!(small.misfit(true, None, 2, 8), Some(Misfit::Channel(it)) if it.source == "PL72:176"));
+        assert_eq!((large.misfit(true, Some(1), 7, 15), large.misfit(false, None, 7, 15)), (None, None));
+        assert!(matches!(compact.misfit(true, Some(1), 0, 0), Some(Misfit::Rack(it)) if it.source == "PL72:206"));
+        assert!(UNITS_17.iter().all(|it| it.inputs <= micro.inputs.last + 1 && it.outputs <= micro.outputs.last + 1));
+    }
+
+    #[test]
+    fn system_objects_of_controllers() {
+        let bit = |name, version, number| model(name, version).has_system_bit(number);
+        assert_eq!(bit("TSX 17-20", None, 13), Some(true));
+        assert_eq!(bit("TSX 27", None, 13), Some(false));
+        assert_eq!((bit("TSX 27", Some("V2"), 19), bit("TSX 27", Some("V3"), 19)), (Some(false), Some(true)));
+        assert_eq!((bit("TSX 47-20", Some("V3"), 20), bit("TSX 47-20", Some("V3.1"), 20)), (Some(false), Some(true)));
+        assert_eq!((bit("TSX 27", None, 11), bit("TSX 47-10", None, 11)), (Some(false), Some(true)));
+        assert_eq!((bit("TSX 17-20", None, 2), bit("TSX 17-20", None, 4)), (None, None));
+        // SY03 means different things, so every controller has it but the old ones.
+        assert_eq!((bit("TSX 17-20", None, 3), bit("TSX 27", Some("V2"), 3)), (Some(true), Some(false)));
+        let word = |name, number| model(name, None).has_system_word(number);
+        assert_eq!(
+            (word("TSX 47-10", 3), word("TSX 47-10", 4), word("TSX 27", 0)),
+            (Some(true), Some(false), Some(false))
+        );
+        assert_eq!((word("TSX 17-20", 6), word("TSX 17-20", 50), word("TSX 17-20", 7)), (Some(true), Some(true), None));
+        assert_eq!(Model::default().has_system_word(50), Some(true));
+    }
+
+    #[test]
+    fn fast_tasks() {
+        assert_eq!(
+            FAST_TASKS.iter().map(|it| (it.period_ms.value, it.networks.value)).collect::<Vec<_>>(),
+            [(5, 10), (10, 20)]
+        );
+        assert!(FAST_TASKS.iter().all(|it| it.duration_us.value * 5 == it.period_ms.value * 1_000));
+    }
+}
