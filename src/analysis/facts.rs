@@ -53,7 +53,7 @@ pub struct FactObject {
 }
 
 impl FactObject {
-    fn new(object: &Object, number: bool) -> Self {
+    pub(super) fn new(object: &Object, number: bool) -> Self {
         let key = (&object.footprint, object.ty, object.indexed);
         let hash = if is_shared(object) { FxBuildHasher.hash_one(key) } else { 0 };
         Self { object: object.clone(), number, hash }
@@ -91,6 +91,17 @@ pub struct FactDeclaration {
     pub ty: SmolStr,
 }
 
+/// A symbol that the unit declares for the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FactSymbol {
+    /// As written.
+    pub name: SmolStr,
+    /// `None` for an instance of a DFB.
+    pub object: Option<Object>,
+    /// Place of the name.
+    pub anchor: u32,
+}
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnitFacts {
     pub entity: Entity,
@@ -108,6 +119,7 @@ pub struct UnitFacts {
     pub instance_of: Option<BlockName>,
     /// Parameters and variables that the block declares.
     pub declared: Vec<FactDeclaration>,
+    pub symbols: Vec<FactSymbol>,
     pub instructions: u32,
     /// Some place computed at run time is read (or written): any object may be.
     pub reads_indirectly: bool,
@@ -197,6 +209,11 @@ impl UnitFacts {
                 .declarations
                 .iter()
                 .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
+                .collect(),
+            symbols: model
+                .symbols
+                .iter()
+                .map(|it| FactSymbol { name: it.name.clone(), object: it.object.clone(), anchor: it.anchor })
                 .collect(),
             instructions: model.instructions,
             reads_indirectly: model.reads_indirectly,

@@ -8,6 +8,7 @@ pub mod counts;
 pub mod drives;
 pub mod facts;
 pub mod program;
+pub mod symbols;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

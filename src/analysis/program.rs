@@ -8,6 +8,7 @@ use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::{Callee, Mode, Section};
+use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -16,6 +17,8 @@ pub enum Context {
     Cyclic,
     Fast,
     Event(u16),
+    /// A task of a PL7 project of which only the number is known.
+    Task(u16),
     /// OB 100 to 102: once, before the first scan.
     Startup,
     /// Any other OB, by number.
@@ -333,6 +336,7 @@ fn own_context(entity: &Entity) -> Option<Context> {
         Entity::Pl7 { task: Task::Mast, .. } => Some(Context::Cyclic),
         Entity::Pl7 { task: Task::Fast, .. } => Some(Context::Fast),
         Entity::Pl7 { task: Task::Event(number), .. } => Some(Context::Event(*number)),
+        Entity::Pl7 { task: Task::Numbered(number), .. } => Some(Context::Task(*number)),
         Entity::Block { name: BlockName::Number(BlockKind::Ob, number), .. } => Some(match number {
             1 => Context::Cyclic,
             100..=102 => Context::Startup,
@@ -413,6 +417,8 @@ fn pl7_2_rank(entity: &Entity) -> u32 {
 /// program, of which none but the chart must be there (PL72:1505-1511).
 fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
     units.iter().any(|it| match (family, &it.entity) {
+        // A cross-reference is one of a whole project.
+        _ if it.language == Language::Pl7Xref => true,
         (Family::Pl72, Entity::Pl7 { task, part, .. }) => {
             *task == Task::Mast && matches!(part, Part::Main | Part::Chart(_))
         }

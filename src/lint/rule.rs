@@ -77,7 +77,9 @@ impl Rule {
     pub fn is_for(&self, language: Language) -> bool {
         self.dialects.iter().any(|dialect| match *dialect {
             "all" => true,
-            "pl7" => matches!(language, Language::Pl7Il | Language::Pl7St),
+            "pl7" => {
+                matches!(language, Language::Pl7Il | Language::Pl7St | Language::Exchange | Language::Pl7Xref)
+            }
             "il" => language == Language::Pl7Il,
             "st" => language == Language::Pl7St,
             "s7" => matches!(language, Language::Awl(_)),

@@ -13,6 +13,7 @@ use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
+use super::symbols::{Remark, Symbol};
 use crate::syntax::Language;
 
 /// An input or output of a timer, counter, monostable, register or drum.
@@ -70,6 +71,8 @@ pub enum Mode {
     Reset,
     /// A word, table or text takes a value.
     Store,
+    /// Written in a way that the source does not tell: by assignment, set, reset or store.
+    Write,
     /// The previous value that `FP`/`FN` keeps: read and written.
     EdgeMemory,
     /// A pin of a block takes a condition.
@@ -99,6 +102,7 @@ impl Mode {
                 | Self::Set
                 | Self::Reset
                 | Self::Store
+                | Self::Write
                 | Self::EdgeMemory
                 | Self::InOut
                 | Self::Output
@@ -120,7 +124,7 @@ impl Mode {
             Self::AssignNot => "assigned (negated)",
             Self::Set => "set",
             Self::Reset => "reset",
-            Self::Store => "written",
+            Self::Store | Self::Write => "written",
             Self::EdgeMemory => "used as edge memory",
             Self::Drive(_) => "driven",
             Self::InOut => "passed to a call",
@@ -455,6 +459,10 @@ pub struct UnitModel {
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
     pub declarations: Vec<Declaration>,
+    /// Symbols that the unit declares for the program.
+    pub symbols: Vec<Symbol>,
+    /// Comments whose length is limited.
+    pub remarks: Vec<Remark>,
     /// Indexes of PL7 objects, in the order of the text.
     pub indexes: Vec<Index>,
     /// Durations, as written.

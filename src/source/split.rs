@@ -49,6 +49,7 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::Step7 => step7(&mut units, hint),
         Detected::Pasted(default) => pasted(&mut units, default, hint),
         Detected::Exchange => exchange(&mut units),
+        Detected::Stx => project(&mut units),
         Detected::Pl72 => pl7_2(&mut units, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
             units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
@@ -372,16 +373,22 @@ fn exchange(units: &mut Units<'_>) {
     }
     let mut state = State::Ended;
     let mut keys = SourceUnit::default();
-    for line in Lines::new(units.text, Comments::Pl7) {
+    let mut lines = Lines::new(units.text, Comments::Pl7);
+    while let Some(line) = lines.next() {
         if line.code.is_empty() {
             continue;
         }
         let mut code = line.code;
         if let Some((block, rest)) = exchange_block(code) {
-            let unsupported = (block == "[DATA_UNIT]").then_some(unsupported::VARIABLES);
-            units.push(units.code_end, Draft { label: Some(block.into()), unsupported, ..Draft::container() });
+            units.push(units.code_end, Draft { label: Some(block.into()), ..Draft::container() });
             keys = SourceUnit::default();
             state = if block == "[SOURCE_UNIT]" { State::Keys } else { State::Other };
+            if block == "[VENDOR]" {
+                // What looks like a comment in there need not be one.
+                units.code_end = next_block(units.text, line.code_start + line.code.len());
+                lines.skip_to(units.code_end);
+                continue;
+            }
             code = rest;
         } else if state == State::Ended {
             units.push(units.code_end, Draft::container());
@@ -408,6 +415,51 @@ fn exchange(units: &mut Units<'_>) {
     if units.drafts.is_empty() {
         units.push(0, Draft::container());
     }
+}
+
+/// Start of the first line after an offset that begins a block; the end of the text without one.
+fn next_block(text: &str, from: usize) -> usize {
+    let mut at = from;
+    for line in text.get(from..).unwrap_or_default().split_inclusive(['\n', '\r']) {
+        if at > from && exchange_block(line.trim_start()).is_some() {
+            return at;
+        }
+        at += line.len();
+    }
+    text.len()
+}
+
+/// The listing of a PL7 project: blocks in brackets, of which those of the cross-reference name what they belong to.
+fn project(units: &mut Units<'_>) {
+    let mut start = 0;
+    for line in units.text.split_inclusive('\n') {
+        let code = line.trim_end();
+        if let Some(address) = code.strip_prefix("[XREF] ") {
+            units.push(start, Draft::new(project_entity(address), Some(Language::Pl7Xref)));
+        } else if code.starts_with('[') || start == 0 {
+            let label = (!code.is_empty()).then(|| code.into());
+            units.push(start, Draft { label, ..Draft::container() });
+        }
+        start += line.len();
+    }
+    if units.drafts.is_empty() {
+        units.push(0, Draft::container());
+    }
+}
+
+/// `MAST - module 0`, `MAST - CHART - PAGE 0 %X1`, `task 516 - SR3`.
+fn project_entity(address: &str) -> Entity {
+    if let Some(entity) = pl7_address(address) {
+        return entity;
+    }
+    let (task, rest) = address.split_once(" - ").unwrap_or((address, ""));
+    let named = pl7_address(task).and_then(|it| it.task());
+    let number = task.strip_prefix("task ").and_then(|it| it.parse().ok());
+    let task = named.or(number.map(Task::Numbered)).unwrap_or(Task::Mast);
+    if rest.starts_with("CHART") {
+        return Entity::Pl7 { task, section: None, part: Part::Chart(rest.into()) };
+    }
+    Entity::Pl7 { task, section: Some(rest.into()), part: Part::Main }
 }
 
 fn ends_program(code: &str) -> bool {
@@ -754,7 +806,7 @@ mod tests {
                 ("[EOF]", KEYS, "[EOF]\n"),
             ],
         );
-        assert_eq!(units[6].unsupported, Some(unsupported::VARIABLES));
+        assert_eq!(unsupported(&units), [None; 8]);
     }
 
     #[test]

@@ -13,6 +13,7 @@ pub mod awl;
 pub mod exchange;
 pub mod pl7;
 pub mod pl72;
+pub mod xref;
 
 pub use kind::SyntaxKind;
 pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
@@ -38,6 +39,8 @@ pub enum Language {
     Pl7St,
     /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
     Exchange,
+    /// The cross-reference of a PL7 project whose code is not readable.
+    Pl7Xref,
 }
 
 /// Parses one unit. Total and linear for every text.
@@ -47,6 +50,7 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Pl7Il => pl7::parse_il(text),
         Language::Pl7St => pl7::parse_st(text),
         Language::Exchange => exchange::parse(text),
+        Language::Pl7Xref => xref::parse(text),
     }
 }
 

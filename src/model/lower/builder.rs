@@ -79,6 +79,8 @@ impl Builder {
             calls: Vec::new(),
             loops: Vec::new(),
             declarations: Vec::new(),
+            symbols: Vec::new(),
+            remarks: Vec::new(),
             indexes: Vec::new(),
             constants: Vec::new(),
             oddities: Vec::new(),

@@ -2,11 +2,11 @@
 
 mod awl;
 mod builder;
+mod exchange;
 mod il;
 mod pl7;
 mod st;
-
-use rowan::TextRange;
+mod xref;
 
 use super::UnitModel;
 use super::entity::Entity;
@@ -19,7 +19,8 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
-        Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
+        Language::Exchange => exchange::lower(root, text, entity),
+        Language::Pl7Xref => xref::lower(root, entity),
     }
 }
 

@@ -28,3 +28,11 @@ pub fn parse_il(text: &str) -> Parse {
 pub fn parse_st(text: &str) -> Parse {
     grammar::parse(text, Dialect::St)
 }
+
+/// Whether a word means something in the language, in any case: a keyword, an instruction, a function, a subroutine.
+pub fn is_reserved(text: &str) -> bool {
+    word::Keyword::of(text).is_some()
+        || instructions::lookup(text).is_some()
+        || functions::lookup(text).is_some()
+        || word::subroutine(text).is_some()
+}
