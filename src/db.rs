@@ -310,9 +310,12 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
         index.leave_incomplete();
     }
     let cx = ProgramCx::new(&index, settings, &target);
+    let family = program.family(db);
     run_rules(settings, |rule, findings| match rule.check {
-        Check::Program(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
-        Check::Unit(_) | Check::File(_) => {}
+        Check::Program(check) if rule.is_for_family(family) => {
+            crate::lint::run(rule, findings, |sink| check(&cx, sink));
+        }
+        Check::Program(_) | Check::Unit(_) | Check::File(_) => {}
     })
 }
 

@@ -509,7 +509,8 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
     objects.sort_by_cached_key(|it| {
         let place = &it.object.footprint;
         let rank = ranks.get(&place.area).copied().unwrap_or(u32::MAX);
-        (rank, place.start, std::cmp::Reverse(place.bits), it.object.ty, it.object.indexed)
+        let address = u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits);
+        (address, it.object.ty, it.object.indexed)
     });
     objects
 }
