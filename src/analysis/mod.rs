@@ -3,10 +3,12 @@
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
 pub mod calls;
+pub mod channels;
 pub mod conditions;
 pub mod counts;
 pub mod drives;
 pub mod facts;
+pub mod gaps;
 pub mod program;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.

@@ -137,6 +137,8 @@ pub struct Access {
     /// Index of the statement that the access is part of.
     pub statement: u32,
     pub anchor: u32,
+    /// Condition under which control reaches the place, within one run of the unit.
+    pub path: ExprId,
     /// For reads: version of the value read. For writes: version that the write makes.
     pub version: u32,
     /// For reads: whether the value may stem from before this unit's own assignments, so from another unit or scan.
@@ -231,6 +233,8 @@ pub struct Jump {
     pub text: SmolStr,
     /// Range of the target.
     pub range: TextRange,
+    /// The same, for facts.
+    pub anchor: u32,
     pub statement: u32,
     /// Condition at the instruction, without the path to it. TRUE when unconditional.
     pub when: ExprId,
