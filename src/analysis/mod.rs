@@ -7,6 +7,7 @@ pub mod channels;
 pub mod conditions;
 pub mod counts;
 pub mod drives;
+pub mod edges;
 pub mod facts;
 pub mod gaps;
 pub mod program;

@@ -132,6 +132,8 @@ pub struct ProgramIndex<'a> {
     pub contexts: Vec<Vec<Context>>,
     /// Whether the system runs each unit, or code that it runs calls it. The contexts of other units are a guess.
     pub reached: Vec<bool>,
+    /// Whether a unit surely runs in each scan of some task: its entry point, and what it calls without a condition.
+    pub sure: Vec<bool>,
     /// Rank of each unit in the order of execution.
     pub order: Vec<u32>,
     /// Whether the program has a cyclic entry point and every block that it calls: only then does the absence of a
@@ -160,6 +162,7 @@ impl<'a> ProgramIndex<'a> {
             }
         }
         let (contexts, reached) = contexts(&units, &calls);
+        let sure = sure(&units, &calls);
         let order = order(family, &units, &calls);
         let complete = is_complete(family, &units, &calls);
         let exclusive = units
@@ -181,6 +184,7 @@ impl<'a> ProgramIndex<'a> {
             callers,
             contexts,
             reached,
+            sure,
             order,
             complete,
             partial,
@@ -225,6 +229,36 @@ impl<'a> ProgramIndex<'a> {
     pub fn task_names(&self, unit: u32) -> String {
         let names: Vec<String> = self.tasks(unit).map(|it| it.name(self.family)).collect();
         names.join(" and ")
+    }
+
+    /// Whether the system or a call surely runs the unit, but not in each scan.
+    pub fn is_passed_by(&self, unit: u32) -> bool {
+        self.reached[unit as usize] && !self.sure[unit as usize] && !self.is_startup(unit)
+    }
+
+    /// A call that depends on a condition, of those that lead to a unit which does not run in each scan.
+    pub fn conditional_call(&self, unit: u32) -> Option<&GlobalCall<'a>> {
+        let mut seen = FxHashSet::default();
+        let mut at = unit;
+        while seen.insert(at) {
+            let callers = self.callers[at as usize].iter().map(|&it| &self.calls[it as usize]);
+            if let Some(call) = callers.clone().find(|it| it.it.conditional) {
+                return Some(call);
+            }
+            at = callers.map(|it| it.unit).next()?;
+        }
+        None
+    }
+
+    /// Whether some run of the unit passes by all its writes of the object that one of its uses is of: number of the
+    /// condition at the first of them.
+    pub fn missed(&self, it: &GlobalUse<'_>) -> Option<u32> {
+        self.units[it.unit as usize].objects.get(it.it.object as usize)?.missed
+    }
+
+    /// Whether an indexed object, which may be any of its area, is written in an area.
+    pub fn is_written_by_index(&self, area: &Area) -> bool {
+        self.objects.iter().any(|it| it.object.indexed && it.object.footprint.area == *area && it.is_written())
     }
 
     /// Whether two calls can both happen in the same scan of the same context.
@@ -421,6 +455,25 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>
         list.sort_unstable();
     }
     (contexts, reached)
+}
+
+/// Which units surely run. What belongs to a step of a chart runs while the step is active.
+fn sure(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<bool> {
+    let is_chart = |it: &Entity| matches!(it, Entity::Pl7 { part: Part::Chart(_), .. });
+    let mut sure: Vec<bool> = units.iter().map(|it| is_entry(&it.entity) && !is_chart(&it.entity)).collect();
+    let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
+    for call in calls.iter().filter(|it| it.it.reachable && !it.it.conditional) {
+        callees[call.unit as usize].extend(call.target);
+    }
+    let mut stack: Vec<u32> = (0..as_index(units.len())).filter(|&it| sure[it as usize]).collect();
+    while let Some(at) = stack.pop() {
+        for &callee in &callees[at as usize] {
+            if !std::mem::replace(&mut sure[callee as usize], true) {
+                stack.push(callee);
+            }
+        }
+    }
+    sure
 }
 
 /// Depth-first from the entry points in file order, callees where they are called; then what nothing calls. The parts of a
