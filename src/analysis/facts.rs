@@ -156,7 +156,7 @@ impl UnitFacts {
         }
         let groups = groups(model, &given);
         let writes = gaps::writes(model);
-        let skips = gaps::skips(model);
+        let (skips, exits) = (gaps::skips(model), gaps::exits(model));
         let uses = model
             .accesses
             .iter()
@@ -190,7 +190,7 @@ impl UnitFacts {
                         .filter(|_| access.mode.is_edge() || matches!(access.mode, Mode::EdgeMemory | Mode::Drive(_)))
                         .and_then(|it| Some(model.jumps.get(it as usize)?.anchor)),
                     stale: access.mode.is_edge()
-                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(&model.exprs, access.path)),
+                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(&model.exprs, access.path, &[])),
                     constant,
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
@@ -200,7 +200,7 @@ impl UnitFacts {
             })
             .collect();
         let missed = |at: u32| {
-            let it = writes.get(&at).filter(|it| it.leave_out(&model.exprs, Exprs::TRUE))?;
+            let it = writes.get(&at).filter(|it| it.leave_out(&model.exprs, Exprs::TRUE, &exits))?;
             Some(it.first().0)
         };
         let objects = (0..).zip(&model.objects).zip(numbers);

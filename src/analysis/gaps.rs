@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::conditions::{self, Verdict};
 use crate::model::UnitModel;
 use crate::model::expr::{ExprId, Exprs};
-use crate::model::unit::{Access, Mode, StatementKind};
+use crate::model::unit::{Access, Mode, Statement, StatementKind};
 
 /// More writes of one object than this are not compared with one another: what they leave out is not known.
 const MAX_WRITES: usize = 32;
@@ -20,12 +20,14 @@ pub struct Writes {
 }
 
 impl Writes {
-    /// Whether some run of the unit, in which the condition holds, surely passes all places by.
-    pub fn leave_out(&self, exprs: &Exprs, given: ExprId) -> bool {
+    /// Whether some run of the unit, in which the condition holds and none of the exits is taken, passes all places by
+    /// for certain.
+    pub fn leave_out(&self, exprs: &Exprs, given: ExprId, exits: &[[ExprId; 2]]) -> bool {
         if self.is_open || self.places.contains(&[Exprs::TRUE; 2]) {
             return false;
         }
-        conditions::without(exprs, &[given], &self.places) == Verdict::Possible
+        let places: Vec<[ExprId; 2]> = self.places.iter().chain(exits).copied().collect();
+        conditions::without(exprs, &[given], &places) == Verdict::Possible
     }
 
     /// The condition of the first place.
@@ -60,6 +62,23 @@ pub fn writes(model: &UnitModel) -> FxHashMap<u32, Writes> {
         }
     }
     found
+}
+
+/// Conditions under which a run ends early, goes back, or jumps to a label that is not there: what it passes by then is
+/// not left out by an `IF` or a jump past it.
+pub fn exits(model: &UnitModel) -> Vec<[ExprId; 2]> {
+    let exit = |statement: &Statement| match statement.kind {
+        StatementKind::Return { when, .. } => Some([statement.path, when]),
+        StatementKind::Halt => Some([statement.path, Exprs::TRUE]),
+        StatementKind::Jump(jump) => {
+            let jump = model.jumps.get(jump as usize)?;
+            let target = jump.target.and_then(|it| model.labels.get(it as usize));
+            let is_forward = target.is_some_and(|it| it.statement > jump.statement);
+            (!is_forward).then_some([statement.path, jump.when])
+        }
+        _ => None,
+    };
+    model.statements.iter().filter_map(exit).take(MAX_WRITES).collect()
 }
 
 /// For each statement, the jump that can skip it: the one before it that leads furthest. An index into the jumps.
