@@ -117,6 +117,8 @@ pub struct UnitFacts {
     /// Parameters and variables that the block declares.
     pub declared: Vec<FactDeclaration>,
     pub instructions: u32,
+    /// Anchor of the first operation of PL7 that can overflow.
+    pub computes: Option<u32>,
     /// Some place computed at run time is read (or written): any object may be.
     pub reads_indirectly: bool,
     pub writes_indirectly: bool,
@@ -219,6 +221,7 @@ impl UnitFacts {
                 .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
                 .collect(),
             instructions: model.instructions,
+            computes: model.computes,
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,

@@ -70,6 +70,8 @@ pub fn exits(model: &UnitModel) -> Vec<[ExprId; 2]> {
     let exit = |statement: &Statement| match statement.kind {
         StatementKind::Return { when, .. } => Some([statement.path, when]),
         StatementKind::Halt => Some([statement.path, Exprs::TRUE]),
+        // Outside of a loop it leaves nothing.
+        StatementKind::Exit if statement.in_loop.is_none() => Some([statement.path, Exprs::TRUE]),
         StatementKind::Jump(jump) => {
             let jump = model.jumps.get(jump as usize)?;
             let target = jump.target.and_then(|it| model.labels.get(it as usize));

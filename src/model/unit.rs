@@ -424,6 +424,24 @@ pub struct Unreachable {
     pub cut_by: TextRange,
 }
 
+/// A part of a program that may hold code, and holds nothing, not even a remark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hollow {
+    pub kind: HollowKind,
+    /// Its keyword, or its head.
+    pub range: TextRange,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum HollowKind {
+    /// What an `IF` does when a condition holds, or when none does.
+    Branch,
+    /// The body of a loop that counts.
+    Loop,
+    /// A network that has a head.
+    Network,
+}
+
 /// A name that a block declares.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Declaration {
@@ -465,6 +483,9 @@ pub struct UnitModel {
     pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,
     pub unreachable: Vec<Unreachable>,
+    pub hollows: Vec<Hollow>,
+    /// Anchor of the first operation of PL7 that can overflow.
+    pub computes: Option<u32>,
     /// Ranges that facts name; the first is the unit's heading.
     pub anchors: Vec<TextRange>,
     /// For a data block: the block that it is an instance of.

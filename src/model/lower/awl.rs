@@ -18,7 +18,7 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, LoopKind, Mode, OddityKind, Pin, Section,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, HollowKind, Leave, LoopKind, Mode, OddityKind, Pin, Section,
     StatementKind,
 };
 use crate::syntax::awl::ast;
@@ -222,6 +222,18 @@ impl Machine {
                     _ => {}
                 }
             }
+            self.hollow(network);
+        }
+    }
+
+    /// Notes a network with nothing below its head.
+    fn hollow(&mut self, network: SyntaxNode<'_>) {
+        let Some(header) = ast::Network::cast(network).and_then(ast::Network::header) else { return };
+        let code = [SyntaxKind::Instr, SyntaxKind::Error, SyntaxKind::Elision];
+        if !network.children_with_tokens().any(|it| code.contains(&it.kind())) {
+            let mut tokens = header.syntax().descendant_tokens();
+            let head = tokens.find(|it| !it.kind().is_trivia()).map(|it| it.text_range());
+            self.b.hollow(HollowKind::Network, network, head.unwrap_or_default());
         }
     }
 

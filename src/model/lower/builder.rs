@@ -12,10 +12,10 @@ use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Object};
 use crate::model::unit::{
-    Access, Call, DeadCause, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement, StatementKind,
+    Access, Call, DeadCause, Hollow, HollowKind, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement, StatementKind,
     UnitModel, Unreachable,
 };
-use crate::syntax::Language;
+use crate::syntax::{Language, SyntaxKind, SyntaxNode};
 
 /// Builds a [`UnitModel`] while a lowering walks the code once, in execution order.
 ///
@@ -83,6 +83,8 @@ impl Builder {
             constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),
+            hollows: Vec::new(),
+            computes: None,
             anchors: vec![heading],
             instance_of: None,
             instructions: 0,
@@ -146,6 +148,20 @@ impl Builder {
         self.area_of.push(area);
         self.model.objects.push(object);
         id
+    }
+
+    /// Notes a part of the program that holds no code, unless a comment says why.
+    pub(super) fn hollow(&mut self, kind: HollowKind, node: SyntaxNode<'_>, head: TextRange) {
+        if !node.descendant_tokens().any(|it| it.kind() == SyntaxKind::Comment) {
+            self.model.hollows.push(Hollow { kind, range: head });
+        }
+    }
+
+    /// Notes an operation that can overflow.
+    pub(super) fn computes(&mut self, range: TextRange) {
+        if self.model.computes.is_none() {
+            self.model.computes = Some(self.anchor(range));
+        }
     }
 
     /// A place that facts can name.
