@@ -12,10 +12,10 @@ use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Object};
 use crate::model::unit::{
-    Access, Call, DeadCause, Hollow, HollowKind, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement, StatementKind,
+    Access, Call, DeadCause, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement, StatementKind,
     UnitModel, Unreachable,
 };
-use crate::syntax::{Language, SyntaxKind, SyntaxNode};
+use crate::syntax::Language;
 
 /// Builds a [`UnitModel`] while a lowering walks the code once, in execution order.
 ///
@@ -148,13 +148,6 @@ impl Builder {
         self.area_of.push(area);
         self.model.objects.push(object);
         id
-    }
-
-    /// Notes a part of the program that holds no code, unless a comment says why.
-    pub(super) fn hollow(&mut self, kind: HollowKind, node: SyntaxNode<'_>, head: TextRange) {
-        if !node.descendant_tokens().any(|it| it.kind() == SyntaxKind::Comment) {
-            self.model.hollows.push(Hollow { kind, range: head });
-        }
     }
 
     /// Notes an operation that can overflow.

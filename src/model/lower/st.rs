@@ -9,9 +9,9 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs};
 use crate::model::object::Rights;
-use crate::model::unit::{DeadCause, HollowKind, Leave, Loop, LoopKind, StatementKind};
+use crate::model::unit::{DeadCause, Hollow, HollowKind, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
-use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
+use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     let mut lowering = Lowering { pl7: Pl7::new(root, entity, Language::Pl7St) };
@@ -198,10 +198,14 @@ impl Lowering {
 
     /// Notes a body without a statement that does anything.
     fn hollow(&mut self, kind: HollowKind, node: SyntaxNode<'_>, body: Option<ast::StmtList<'_>>) {
+        let is_remark = |it: SyntaxToken<'_>| it.kind() == SyntaxKind::Comment;
         let mut statements = body.into_iter().flat_map(|it| it.statements());
         let is_odd = |it: SyntaxElement<'_>| matches!(it.kind(), SyntaxKind::Error | SyntaxKind::Elision);
         if statements.all(|it| matches!(it, Stmt::Empty(_))) && !node.children_with_tokens().any(is_odd) {
-            self.pl7.b.hollow(kind, node, keyword(node));
+            let range = keyword(node);
+            if !node.descendant_tokens().any(is_remark) {
+                self.pl7.b.model.hollows.push(Hollow { kind, range });
+            }
         }
     }
 }
