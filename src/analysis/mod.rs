@@ -3,10 +3,13 @@
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
 pub mod calls;
+pub mod channels;
 pub mod conditions;
 pub mod counts;
 pub mod drives;
+pub mod edges;
 pub mod facts;
+pub mod gaps;
 pub mod program;
 pub mod symbols;
 

@@ -25,6 +25,36 @@ pub enum Context {
     Interrupt(u32),
 }
 
+impl Context {
+    /// Whether code of one context never interrupts code of the other. Events but EVT0 have one priority (PL7:2113-2117);
+    /// so have the OBs of one kind, by the vendor's general documentation.
+    fn is_level_with(self, other: Self) -> bool {
+        let kind = |ob: u32| match ob {
+            10..=17 => 10,
+            80..=89 => 80,
+            other => other,
+        };
+        match (self, other) {
+            (Self::Event(a), Self::Event(b)) => a == b || (a != 0 && b != 0),
+            (Self::Interrupt(a), Self::Interrupt(b)) => kind(a) == kind(b),
+            (a, b) => a == b,
+        }
+    }
+
+    /// The task or block that it stands for.
+    pub fn name(self, family: Family) -> String {
+        match (self, family) {
+            (Self::Cyclic, Family::Step7) => "OB1".to_owned(),
+            (Self::Cyclic, _) => "MAST".to_owned(),
+            (Self::Fast, _) => "FAST".to_owned(),
+            (Self::Event(number), _) => format!("EVT{number}"),
+            (Self::Task(number), _) => format!("task {number}"),
+            (Self::Startup, _) => "the start-up blocks".to_owned(),
+            (Self::Interrupt(number), _) => format!("OB{number}"),
+        }
+    }
+}
+
 /// One use of an object, with the unit that it stands in.
 #[derive(Debug, Clone, Copy)]
 pub struct GlobalUse<'a> {
@@ -104,6 +134,10 @@ pub struct ProgramIndex<'a> {
     pub callers: Vec<Vec<u32>>,
     /// Contexts that run each unit, sorted.
     pub contexts: Vec<Vec<Context>>,
+    /// Whether the system runs each unit, or code that it runs calls it. The contexts of other units are a guess.
+    pub reached: Vec<bool>,
+    /// Whether a unit surely runs in each scan of some task: its entry point, and what it calls without a condition.
+    pub sure: Vec<bool>,
     /// Rank of each unit in the order of execution.
     pub order: Vec<u32>,
     /// Whether the program has a cyclic entry point and every block that it calls: only then does the absence of a
@@ -131,7 +165,8 @@ impl<'a> ProgramIndex<'a> {
                 calls.push(GlobalCall { unit: as_index(unit), index: as_index(index), it, target });
             }
         }
-        let contexts = contexts(&units, &calls);
+        let (contexts, reached) = contexts(&units, &calls);
+        let sure = sure(&units, &calls);
         let order = order(family, &units, &calls);
         let complete = is_complete(family, &units, &calls);
         let exclusive = units
@@ -152,6 +187,8 @@ impl<'a> ProgramIndex<'a> {
             calls,
             callers,
             contexts,
+            reached,
+            sure,
             order,
             complete,
             partial,
@@ -177,6 +214,55 @@ impl<'a> ProgramIndex<'a> {
         }
         let (x, y) = (&self.contexts[a as usize], &self.contexts[b as usize]);
         x.iter().any(|it| y.contains(it)) && !self.exclusive_units(a, b)
+    }
+
+    /// The tasks that surely run a unit, start-up left out; none when its caller is not known.
+    pub fn tasks(&self, unit: u32) -> impl Iterator<Item = Context> + '_ {
+        let known = self.reached[unit as usize];
+        let contexts = self.contexts[unit as usize].iter().filter(move |_| known);
+        contexts.copied().filter(|it| *it != Context::Startup)
+    }
+
+    /// Whether two units surely run in tasks of which one interrupts the other, and in none that is the same.
+    pub fn in_other_tasks(&self, a: u32, b: u32) -> bool {
+        let has = |unit: u32| self.tasks(unit).next().is_some();
+        has(a) && has(b) && !self.tasks(a).any(|it| self.tasks(b).any(|other| it.is_level_with(other)))
+    }
+
+    /// The tasks that run a unit, for a message: `MAST`, `FAST and EVT1`.
+    pub fn task_names(&self, unit: u32) -> String {
+        let names: Vec<String> = self.tasks(unit).map(|it| it.name(self.family)).collect();
+        names.join(" and ")
+    }
+
+    /// Whether the system or a call surely runs the unit, but not in each scan.
+    pub fn is_passed_by(&self, unit: u32) -> bool {
+        self.reached[unit as usize] && !self.sure[unit as usize] && !self.is_startup(unit)
+    }
+
+    /// A call that depends on a condition, of those that lead to a unit which does not run in each scan.
+    pub fn conditional_call(&self, unit: u32) -> Option<&GlobalCall<'a>> {
+        let mut seen = FxHashSet::default();
+        let mut at = unit;
+        while seen.insert(at) {
+            let callers = self.callers[at as usize].iter().map(|&it| &self.calls[it as usize]);
+            if let Some(call) = callers.clone().find(|it| it.it.conditional) {
+                return Some(call);
+            }
+            at = callers.map(|it| it.unit).next()?;
+        }
+        None
+    }
+
+    /// Whether some run of the unit passes by all its writes of the object that one of its uses is of: number of the
+    /// condition at the first of them.
+    pub fn missed(&self, it: &GlobalUse<'_>) -> Option<u32> {
+        self.units[it.unit as usize].objects.get(it.it.object as usize)?.missed
+    }
+
+    /// Whether an indexed object, which may be any of its area, is written in an area.
+    pub fn is_written_by_index(&self, area: &Area) -> bool {
+        self.objects.iter().any(|it| it.object.indexed && it.object.footprint.area == *area && it.is_written())
     }
 
     /// Whether two calls can both happen in the same scan of the same context.
@@ -347,7 +433,8 @@ fn own_context(entity: &Entity) -> Option<Context> {
     }
 }
 
-fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<Vec<Context>> {
+/// Contexts of each unit, and whether they are known.
+fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>>, Vec<bool>) {
     let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
     for call in calls {
         if let Some(target) = call.target.filter(|_| call.it.reachable) {
@@ -365,13 +452,33 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<Vec<Context>>
             }
         }
     }
+    let reached = contexts.iter().map(|it| !it.is_empty()).collect();
     for (unit, list) in contexts.iter_mut().enumerate() {
         if list.is_empty() {
             list.push(own_context(&units[unit].entity).unwrap_or(Context::Cyclic));
         }
         list.sort_unstable();
     }
-    contexts
+    (contexts, reached)
+}
+
+/// Which units surely run. What belongs to a step of a chart runs while the step is active.
+fn sure(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<bool> {
+    let is_chart = |it: &Entity| matches!(it, Entity::Pl7 { part: Part::Chart(_), .. });
+    let mut sure: Vec<bool> = units.iter().map(|it| is_entry(&it.entity) && !is_chart(&it.entity)).collect();
+    let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
+    for call in calls.iter().filter(|it| it.it.reachable && !it.it.conditional) {
+        callees[call.unit as usize].extend(call.target);
+    }
+    let mut stack: Vec<u32> = (0..as_index(units.len())).filter(|&it| sure[it as usize]).collect();
+    while let Some(at) = stack.pop() {
+        for &callee in &callees[at as usize] {
+            if !std::mem::replace(&mut sure[callee as usize], true) {
+                stack.push(callee);
+            }
+        }
+    }
+    sure
 }
 
 /// Depth-first from the entry points in file order, callees where they are called; then what nothing calls. The parts of a

@@ -143,7 +143,7 @@ fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFa
     }
     for (fact, object) in facts.objects.iter_mut().zip(found) {
         if let Some(object) = object {
-            *fact = FactObject::new(&object, fact.number);
+            *fact = FactObject::new(&object, fact.number, fact.missed);
         }
     }
     join_aliases(&mut facts);

@@ -141,6 +141,8 @@ pub struct Access {
     /// Index of the statement that the access is part of.
     pub statement: u32,
     pub anchor: u32,
+    /// Condition under which control reaches the place, within one run of the unit.
+    pub path: ExprId,
     /// For reads: version of the value read. For writes: version that the write makes.
     pub version: u32,
     /// For reads: whether the value may stem from before this unit's own assignments, so from another unit or scan.
@@ -235,6 +237,8 @@ pub struct Jump {
     pub text: SmolStr,
     /// Range of the target.
     pub range: TextRange,
+    /// The same, for facts.
+    pub anchor: u32,
     pub statement: u32,
     /// Condition at the instruction, without the path to it. TRUE when unconditional.
     pub when: ExprId,
@@ -424,6 +428,24 @@ pub struct Unreachable {
     pub cut_by: TextRange,
 }
 
+/// A part of a program that may hold code, and holds nothing, not even a remark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hollow {
+    pub kind: HollowKind,
+    /// Its keyword, or its head.
+    pub range: TextRange,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum HollowKind {
+    /// What an `IF` does when a condition holds, or when none does.
+    Branch,
+    /// The body of a loop that counts.
+    Loop,
+    /// A network that has a head.
+    Network,
+}
+
 /// A name that a block declares.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Declaration {
@@ -469,6 +491,9 @@ pub struct UnitModel {
     pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,
     pub unreachable: Vec<Unreachable>,
+    pub hollows: Vec<Hollow>,
+    /// Anchor of the first operation of PL7 that can overflow.
+    pub computes: Option<u32>,
     /// Ranges that facts name; the first is the unit's heading.
     pub anchors: Vec<TextRange>,
     /// For a data block: the block that it is an instance of.

@@ -85,6 +85,8 @@ impl Builder {
             constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),
+            hollows: Vec::new(),
+            computes: None,
             anchors: vec![heading],
             instance_of: None,
             instructions: 0,
@@ -150,6 +152,13 @@ impl Builder {
         id
     }
 
+    /// Notes an operation that can overflow.
+    pub(super) fn computes(&mut self, range: TextRange) {
+        if self.model.computes.is_none() {
+            self.model.computes = Some(self.anchor(range));
+        }
+    }
+
     /// A place that facts can name.
     pub(super) fn anchor(&mut self, range: TextRange) -> u32 {
         self.model.anchors.push(range);
@@ -159,7 +168,16 @@ impl Builder {
     fn access(&mut self, object: ObjectId, mode: Mode, range: TextRange, version: u32, exposed: bool) -> u32 {
         let anchor = self.anchor(range);
         let statement = index(self.model.statements.len());
-        self.model.accesses.push(Access { object, mode, statement, anchor, version, exposed, parameter: None });
+        self.model.accesses.push(Access {
+            object,
+            mode,
+            statement,
+            anchor,
+            path: self.path,
+            version,
+            exposed,
+            parameter: None,
+        });
         index(self.model.accesses.len() - 1)
     }
 
@@ -359,7 +377,8 @@ impl Builder {
     pub(super) fn jump(&mut self, label: SmolStr, text: SmolStr, at: TextRange, when: ExprId, range: TextRange) {
         let target = self.label_index.get(&label).copied();
         let statement = index(self.model.statements.len());
-        self.model.jumps.push(Jump { label: label.clone(), text, range: at, statement, when, target });
+        let anchor = self.anchor(at);
+        self.model.jumps.push(Jump { label: label.clone(), text, range: at, anchor, statement, when, target });
         let jump = index(self.model.jumps.len() - 1);
         self.statement(StatementKind::Jump(jump), range);
         let taken = self.model.exprs.and(self.path, when);
