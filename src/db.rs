@@ -745,6 +745,7 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
         (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),
         (_, Some(Language::Pl7St)) => "PL7 structured text".to_owned(),
+        (_, Some(Language::Pl7Ld)) => "PL7 ladder".to_owned(),
         _ => "PLC text".to_owned(),
     }
 }

@@ -77,9 +77,11 @@ impl Rule {
     pub fn is_for(&self, language: Language) -> bool {
         self.dialects.iter().any(|dialect| match *dialect {
             "all" => true,
-            "pl7" => {
-                matches!(language, Language::Pl7Il | Language::Pl7St | Language::Exchange | Language::Pl7Xref)
-            }
+            "pl7" => matches!(
+                language,
+                Language::Pl7Il | Language::Pl7St | Language::Pl7Ld | Language::Exchange | Language::Pl7Xref
+            ),
+            "ld" => language == Language::Pl7Ld,
             "il" => language == Language::Pl7Il,
             "st" => language == Language::Pl7St,
             "s7" => matches!(language, Language::Awl(_)),
@@ -90,7 +92,7 @@ impl Rule {
     /// Whether programs of a family are among what the rule looks at.
     pub fn is_for_family(&self, family: Family) -> bool {
         self.dialects.iter().any(|dialect| match family {
-            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st"),
+            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld"),
             Family::Pl72 => matches!(*dialect, "all" | "pl72"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })

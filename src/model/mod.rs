@@ -4,6 +4,7 @@
 
 pub mod entity;
 pub mod expr;
+pub mod ladder;
 pub mod literal;
 pub mod lower;
 pub mod object;

@@ -11,6 +11,7 @@ use smol_str::SmolStr;
 
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
+use super::ladder::Flaw;
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use super::symbols::{Remark, Symbol};
@@ -376,6 +377,9 @@ pub enum OddityKind {
     BlockStructure(String),
     /// Operand of a type that the instruction does not take: the sentence says which it takes.
     OperandType(String),
+
+    // PL7 ladder.
+    Ladder(Flaw),
 
     // STEP 7 and STEP 5.
     /// The RLO at block start, which is the caller's.

@@ -10,6 +10,7 @@ use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
 };
 use crate::model::entity::BlockKind;
+use crate::syntax::pl7::ladder_words;
 
 use super::scan::{Comments, Lines};
 use super::stx;
@@ -20,15 +21,16 @@ pub enum Dialect {
     #[default]
     Auto,
     Step7,
-    /// PL7, instruction list or structured text by content.
+    /// PL7, its language by content.
     Pl7,
     Pl7Il,
     Pl7St,
+    Pl7Ld,
     Pl72,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 6] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St, Self::Pl72];
+    pub const ALL: [Self; 7] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St, Self::Pl7Ld, Self::Pl72];
 
     pub fn as_str(self) -> &'static str {
         match self {
@@ -37,6 +39,7 @@ impl Dialect {
             Self::Pl7 => "pl7",
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
+            Self::Pl7Ld => "pl7-ld",
             Self::Pl72 => "pl7-2",
         }
     }
@@ -54,7 +57,7 @@ pub struct UnknownDialect(pub String);
 
 impl fmt::Display for UnknownDialect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st or pl7-2", self.0)
+        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st, pl7-ld or pl7-2", self.0)
     }
 }
 
@@ -70,11 +73,12 @@ impl FromStr for Dialect {
     }
 }
 
-/// The text languages of PL7.
+/// The languages of PL7 whose sections are text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pl7Text {
     Il,
     St,
+    Ld,
 }
 
 /// What a file is.
@@ -109,9 +113,8 @@ pub struct FileHint<'p> {
 
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
-    pub const LADDER: &str = "PL7 ladder (LD)";
     pub const GRAFCET: &str = "PL7 Grafcet (GR7)";
-    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL and ST";
+    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST and LD";
     pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
@@ -270,10 +273,13 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
         Dialect::Step7 => Detected::Step7,
-        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl72 if tally.is_exchange() => Detected::Exchange,
+        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl7Ld | Dialect::Pl72 if tally.is_exchange() => {
+            Detected::Exchange
+        }
         Dialect::Pl7 => Detected::Pasted(tally.pl7_text(extension(hint.path))),
         Dialect::Pl7Il => Detected::Pasted(Pl7Text::Il),
         Dialect::Pl7St => Detected::Pasted(Pl7Text::St),
+        Dialect::Pl7Ld => Detected::Pasted(Pl7Text::Ld),
         Dialect::Pl72 => Detected::Pl72,
     }
 }
@@ -283,7 +289,7 @@ pub(super) fn pl7_text(text: &str) -> Pl7Text {
     Tally::of(text).pl7_text(Extension::Other)
 }
 
-/// The form of PL7 text that is neither IL nor ST, by its content.
+/// The form of PL7 text that is not read, by its content.
 pub(super) fn pl7_unsupported(text: &str) -> Option<&'static str> {
     Tally::of(text).pl7_unsupported()
 }
@@ -331,7 +337,7 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         }
         // A sentence or an expression alone: nothing but what has addresses or marks of PL7.
         Extension::Il | Extension::St if tally.pl7 == tally.lines => Detected::Pasted(tally.pl7_text(extension)),
-        Extension::Ld if tally.rung > 0 => Detected::Unsupported { what: unsupported::LADDER },
+        Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
         Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Unsupported { what: unsupported::GRAFCET },
         Extension::Sfc if tally.chart > 0 => Detected::Unsupported { what: unsupported::SFC },
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
@@ -372,6 +378,7 @@ struct Tally {
     /// Headings of pasted PL7 text, by language.
     headings_il: u32,
     headings_st: u32,
+    headings_ld: u32,
     headings_other: u32,
     /// Headings of PL7-2 text, in any language; the others do not count them.
     headings_pl7_2: u32,
@@ -391,7 +398,9 @@ struct Tally {
     iec: u32,
     /// `Pump AT %M0 : EBOOL;`
     variables: u32,
+    /// Words that frame rungs, and elements of them.
     rung: u32,
+    cells: u32,
     chart: u32,
     /// Words of S7-GRAPH.
     graph: u32,
@@ -437,7 +446,8 @@ impl Tally {
                 _ if heading.pl7_2 => self.headings_pl7_2 += 1,
                 HeadingLanguage::Il => self.headings_il += 1,
                 HeadingLanguage::St => self.headings_st += 1,
-                HeadingLanguage::Ladder | HeadingLanguage::Grafcet => self.headings_other += 1,
+                HeadingLanguage::Ladder => self.headings_ld += 1,
+                HeadingLanguage::Grafcet => self.headings_other += 1,
             }
         } else if let Some(block) = block_header(line) {
             self.block_headers += 1;
@@ -462,11 +472,15 @@ impl Tally {
                 self.st += 1;
                 self.scl += u32::from(self.in_code_block);
             }
-            None => {}
+            Some(Pl7Text::Ld) | None => {}
         }
         match first {
-            "RUNG" | "END_RUNG" | "OPEN_CONTACT" | "CLOSE_CONTACT" | "CLOSED_CONTACT" | "P_CONTACT" | "N_CONTACT"
-            | "H_LINK" | "V_LINK" | "EMPTY_LINE" | "EMPTY_CELL" | "SHORT_CIRCUIT" | "HASH_COIL" => self.rung += 1,
+            "RUNG" | "END_RUNG" => self.rung += 1,
+            // Words without an underscore are words of other languages too.
+            _ if first.contains('_') && ladder_words::lookup(first).is_some() => {
+                self.rung += 1;
+                self.cells += 1;
+            }
             "NB_PAGES" | "END_PAGE" | "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "T_S_OR_LINK"
             | "S_T_OR_LINK" => self.chart += 1,
             "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
@@ -493,7 +507,7 @@ impl Tally {
     }
 
     fn headings(&self) -> u32 {
-        self.headings_il + self.headings_st + self.headings_other
+        self.headings_il + self.headings_st + self.headings_ld + self.headings_other
     }
 
     /// Lines that are code of a dialect that is read.
@@ -533,8 +547,8 @@ impl Tally {
         }
         let most = |count: u32| count * 5 >= lines * 3;
         let enough = |count: u32| count > 2 || count > 1 && count == lines;
-        if self.rung > 1 && most(self.rung + self.il) {
-            return Some(Detected::Unsupported { what: unsupported::LADDER });
+        if self.rung > 1 && self.cells > 0 && most(self.rung + self.il + self.st) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
         let step7 = self.step7 + if self.step7 > 0 { self.declarations } else { 0 };
         if enough(self.step7) && most(step7) && self.step7 > self.il + self.st {
@@ -551,10 +565,14 @@ impl Tally {
     }
 
     fn pl7_text(&self, extension: Extension) -> Pl7Text {
-        let (il, st) = match (self.headings_il, self.headings_st) {
-            (0, 0) => (self.il, self.st),
+        // Of all words, those of rungs are the least ambiguous; a line of a rung may look like a line of other languages.
+        let (il, st, ld) = match (self.headings_il, self.headings_st, self.headings_ld) {
+            (0, 0, 0) => (self.il, self.st, self.cells),
             headings => headings,
         };
+        if ld > 0 && ld >= il.max(st) {
+            return Pl7Text::Ld;
+        }
         match il.cmp(&st) {
             std::cmp::Ordering::Greater => Pl7Text::Il,
             std::cmp::Ordering::Equal if extension == Extension::Il => Pl7Text::Il,
@@ -563,13 +581,7 @@ impl Tally {
     }
 
     fn pl7_unsupported(&self) -> Option<&'static str> {
-        if self.chart > 0 {
-            Some(unsupported::GRAFCET)
-        } else if self.rung > 0 {
-            Some(unsupported::LADDER)
-        } else {
-            None
-        }
+        (self.chart > 0).then_some(unsupported::GRAFCET)
     }
 }
 
@@ -832,6 +844,7 @@ mod tests {
     const STEP7: Detected = Detected::Step7;
     const IL: Detected = Detected::Pasted(Pl7Text::Il);
     const ST: Detected = Detected::Pasted(Pl7Text::St);
+    const LD: Detected = Detected::Pasted(Pl7Text::Ld);
 
     fn unsupported(what: &'static str) -> Detected {
         Detected::Unsupported { what }
@@ -871,13 +884,13 @@ mod tests {
                 unsupported(unsupported::SCL),
             );
             check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", unsupported(unsupported::STEP5));
-            check(path, RUNG, unsupported(unsupported::LADDER));
+            check(path, RUNG, LD);
         }
         check("a.txt", "DATA_BLOCK DB 1\nSTRUCT\n a : INT;\nEND_STRUCT;\nBEGIN\n a := 1;\nEND_DATA_BLOCK", STEP7);
         check("a.txt", "U S1\n= Sto\nU X41\nO(\nUN T2p[21]\n)\n= X1", STEP7);
         check("a.txt", "U T1\n= A4.0", STEP7);
         check("a.txt", "ST : MAST - SR10\n%M0 := TRUE;", ST);
-        check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", ST);
+        check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", LD);
     }
 
     #[test]
@@ -920,7 +933,7 @@ mod tests {
                 check(path, &format!("(* press *)\n{heading}\n{rung}"), Detected::Pl72);
             }
             check(path, &format!("LD : PL7-2 - POST\n{rung}ST : MAST - SR1\n! %M1 := %M2;\n"), ST);
-            check(path, &format!("LD : MAST - POST\n{rung}"), ST);
+            check(path, &format!("LD : MAST - POST\n{rung}"), LD);
         }
         let prose = "A program of the TSX 27 is written under headings of this kind:\n\nLD : PL7-2 - POST\n\n\
                      There is one for each part of the program, as the document says.\n";

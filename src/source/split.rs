@@ -238,6 +238,7 @@ fn pl7_language(text: Pl7Text) -> Language {
     match text {
         Pl7Text::Il => Language::Pl7Il,
         Pl7Text::St => Language::Pl7St,
+        Pl7Text::Ld => Language::Pl7Ld,
     }
 }
 
@@ -325,7 +326,7 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
                 _ if heading.pl7_2 => (Language::Exchange, Some(unsupported::PL7_2)),
                 HeadingLanguage::Il => (Language::Pl7Il, None),
                 HeadingLanguage::St => (Language::Pl7St, None),
-                HeadingLanguage::Ladder => (Language::Exchange, Some(unsupported::LADDER)),
+                HeadingLanguage::Ladder => (Language::Pl7Ld, None),
                 HeadingLanguage::Grafcet => (Language::Exchange, Some(unsupported::GRAFCET)),
             };
             units.push(units.code_end, Draft { unsupported, ..Draft::new(heading.entity, Some(language)) });
@@ -539,7 +540,7 @@ impl<'t> SourceUnit<'t> {
         let (language, unsupported) = match (language.as_str(), program_language.as_str()) {
             ("IL", _) => (Some(Language::Pl7Il), None),
             ("ST", _) => (Some(Language::Pl7St), None),
-            ("LD", _) => (Some(Language::Exchange), Some(unsupported::LADDER)),
+            ("LD", _) => (Some(Language::Pl7Ld), None),
             (_, "GR7") | ("GR7", _) => (Some(Language::Exchange), Some(unsupported::GRAFCET)),
             ("", _) => (None, None),
             _ => (Some(Language::Exchange), Some(unsupported::OTHER_LANGUAGE)),
@@ -615,6 +616,7 @@ mod tests {
 
     const GERMAN: Language = Language::Awl(Mnemonics::German);
     const ST: Language = Language::Pl7St;
+    const LD: Language = Language::Pl7Ld;
     const IL: Language = Language::Pl7Il;
     const KEYS: Language = Language::Exchange;
 
@@ -745,14 +747,14 @@ mod tests {
                     ST,
                     "ST : MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)\n%M1\n",
                 ),
-                ("FAST - MAIN", KEYS, "LD : FAST - MAIN\nRUNG\n"),
+                ("FAST - MAIN", LD, "LD : FAST - MAIN\nRUNG\n"),
                 ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
                 ("MAST - PRL", KEYS, "ST : PL7-2 - PRL\n"),
                 ("MAST - Peinture - CHART", KEYS, "GR7 : MAST - Peinture - CHART\n"),
             ],
         );
-        use super::unsupported::{GRAFCET, LADDER, PL7_2};
-        let expected = [None, None, None, None, Some(LADDER), Some(PL7_2), Some(PL7_2), Some(GRAFCET)];
+        use super::unsupported::{GRAFCET, PL7_2};
+        let expected = [None, None, None, None, None, Some(PL7_2), Some(PL7_2), Some(GRAFCET)];
         assert_eq!(unsupported(&units), expected);
     }
 
@@ -811,7 +813,7 @@ mod tests {
 
     #[test]
     fn programs_of_exchange_files() {
-        use super::unsupported::{DFB, GRAFCET, LADDER, OTHER_LANGUAGE};
+        use super::unsupported::{DFB, GRAFCET, OTHER_LANGUAGE};
         for (keys, program, expected, language, form) in [
             ("ADDRESS = MAST SR1", "PROGRAM", "MAST - SR1", ST, None),
             ("NAME = 'FAST_MAIN' LANGUAGE = IL ADDRESS = FAST MAIN", "PROGRAM", "FAST - MAIN", IL, None),
@@ -826,8 +828,8 @@ mod tests {
                 Some(GRAFCET),
             ),
             ("LANGUAGE = OTHERS", "PROGRAMMAST'Chart'", "MAST - CHART", KEYS, Some(OTHER_LANGUAGE)),
-            ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", KEYS, Some(LADDER)),
-            ("NAME = 'x'", "PROGRAM\nRUNG", "MAST - x", KEYS, Some(LADDER)),
+            ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", LD, None),
+            ("NAME = 'x'", "PROGRAM\nRUNG\nH_LINK(10),COIL(%M0);\nEND_RUNG", "MAST - x", LD, None),
             ("NAME = 'x'", "PROGRAM\n LD %M0\n ST %M1", "MAST - x", IL, None),
             ("NAME = 'x'", "FUNCTION_BLOCK Cpt", "FUNCTION_BLOCK Cpt", KEYS, Some(DFB)),
             ("PROGRAM = x ADDRESS = nonsense", "PROGRAM", "MAST - MAIN", ST, None),

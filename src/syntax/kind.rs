@@ -160,6 +160,12 @@ kinds! {
     /// A symbol, with an optional `.item`.
     NameRef,
     Index,
+    /// `RUNG ... END_RUNG`.
+    Rung,
+    /// One row of a rung, with its `;`.
+    RungRow,
+    /// `OPEN_CONTACT(%I1.0)`, `COMPARE ... END_BLOCK`.
+    Cell,
 
     // Exchange container nodes.
     ExchangeBlock,

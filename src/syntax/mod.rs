@@ -37,6 +37,8 @@ pub enum Language {
     Pl7Il,
     /// PL7 structured text.
     Pl7St,
+    /// PL7 ladder, as exchange files write it.
+    Pl7Ld,
     /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
     Exchange,
     /// The cross-reference of a PL7 project whose code is not readable.
@@ -49,6 +51,7 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Awl(mnemonics) => awl::parse(text, mnemonics),
         Language::Pl7Il => pl7::parse_il(text),
         Language::Pl7St => pl7::parse_st(text),
+        Language::Pl7Ld => pl7::parse_ld(text),
         Language::Exchange => exchange::parse(text),
         Language::Pl7Xref => xref::parse(text),
     }

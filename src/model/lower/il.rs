@@ -18,6 +18,7 @@ use crate::syntax::pl7::ast::{self, BracketContent, IlOperand};
 use crate::syntax::pl7::instructions::{self, IlOp};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
+use crate::target::pl7::block;
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     // A receptivity is a list of tests alone (PL7:4713-4749).
@@ -528,12 +529,8 @@ impl Lowering {
             return;
         }
         if data.class == Class::Block && matches!(op, IlOp::S | IlOp::R) {
-            let starts = data.text.to_ascii_uppercase().starts_with("%MN");
-            let pin = match op {
-                IlOp::R => Pin::Reset,
-                _ if starts => Pin::Start,
-                _ => Pin::Preset,
-            };
+            let letters = block::of_address(&data.text).map_or("", |it| it.letters);
+            let pin = pl7::pin(letters, op.info().mnemonic);
             self.check_pin(object, op, range, text);
             self.pl7.b.drive(object, pin, when, None, at, range);
             return;
@@ -560,14 +557,7 @@ impl Lowering {
     /// `IN %TM1`, `CU %C8`, and the same without operand inside a structured block.
     fn drive(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange, text: &str) {
         self.in_parentheses(OddityKind::StoreInParentheses, range, text);
-        let pin = match op {
-            IlOp::Cu => Pin::Up,
-            IlOp::Cd => Pin::Down,
-            IlOp::I => Pin::Store,
-            IlOp::O => Pin::Retrieve,
-            IlOp::U => Pin::Advance,
-            _ => Pin::Start,
-        };
+        let pin = pl7::pin("", op.info().mnemonic);
         let place = match instr.operand() {
             Some(IlOperand::Object(it)) => Some(self.pl7.object_ref(&it)),
             Some(IlOperand::Name(it)) => Some(self.pl7.name_ref(&it)),
@@ -614,7 +604,7 @@ impl Lowering {
     fn check_pin(&mut self, object: ObjectId, op: IlOp, range: TextRange, text: &str) {
         let data = self.pl7.b.model.object(object);
         let Some(inputs) = inputs_of(&data.text) else { return };
-        if !inputs.contains(&op) {
+        if !inputs.contains(&op.info().mnemonic) {
             let message = format!("`{}` has no input `{}`", data.text, op.info().mnemonic);
             self.structure(range, text, &message);
         }
@@ -692,18 +682,9 @@ impl Lowering {
     }
 }
 
-/// Inputs of a function block by its address (PL7:977-999 for the families; the inputs are those of the blocks'
-/// drawings and of the vendor's second volume).
-fn inputs_of(address: &str) -> Option<&'static [IlOp]> {
-    let letters = address.trim_start_matches('%').trim_end_matches(|it: char| it.is_ascii_digit());
-    Some(match letters.to_ascii_uppercase().as_str() {
-        "TM" => &[IlOp::In],
-        "C" => &[IlOp::R, IlOp::S, IlOp::Cu, IlOp::Cd],
-        "MN" => &[IlOp::S],
-        "R" => &[IlOp::R, IlOp::I, IlOp::O],
-        "DR" => &[IlOp::R, IlOp::U],
-        _ => return None,
-    })
+/// Inputs of a function block by its address. How a list drives series 7 timers is not in the manual.
+fn inputs_of(address: &str) -> Option<&'static [&'static str]> {
+    block::of_address(address).filter(|it| it.letters != "T").map(|it| it.inputs)
 }
 
 /// Outputs of the blocks of PL7:977-999, by the letters of their bits.

@@ -4,6 +4,7 @@ mod awl;
 mod builder;
 mod exchange;
 mod il;
+mod ladder;
 mod pl7;
 mod st;
 mod xref;
@@ -21,6 +22,7 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => exchange::lower(root, text, entity),
         Language::Pl7Xref => xref::lower(root, entity),
+        Language::Pl7Ld => ladder::lower(root, text, entity),
     }
 }
 

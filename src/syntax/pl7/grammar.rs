@@ -1,4 +1,4 @@
-//! What the grammars of the two languages share: errors, depth, recovery, the frame of a unit and its sentences.
+//! What the grammars of the languages share: errors, depth, recovery, the frame of a unit and its sentences.
 
 use SyntaxKind::{
     Bang, CharString, Colon, Comma, Elision, Error, Heading, Ident, LBrack, LParen, LabelAddress, LabelDef, Minus,
@@ -15,6 +15,7 @@ use crate::syntax::{MAX_DEPTH, Marker, Parse, Parser, SyntaxKind};
 pub(super) enum Dialect {
     Il,
     St,
+    Ld,
 }
 
 /// How many control structures of each kind are open.
@@ -54,6 +55,7 @@ pub(super) fn parse(text: &str, dialect: Dialect) -> Parse {
     let words: Vec<_> = (0..)
         .map_while(|n| parser.nth(n).map(|kind| (n, kind)))
         .map(|(n, kind)| if kind == Ident { Keyword::of(parser.nth_text(n)) } else { None })
+        .map(|word| word.filter(|it| !it.is_of_ladder() || !matches!(dialect, Dialect::Il | Dialect::St)))
         .collect();
     let state = State {
         words: &words,
@@ -70,7 +72,7 @@ pub(super) fn parse(text: &str, dialect: Dialect) -> Parse {
 }
 
 impl<'t> Grammar<'_, 't> {
-    /// unit = (heading | program line | sentence)*
+    /// unit = (heading | program line | sentence | rung)*
     fn unit(&mut self) {
         if self.at_task_line() {
             self.heading();
@@ -84,6 +86,10 @@ impl<'t> Grammar<'_, 't> {
             } else if self.p.at(SentenceEnd) {
                 self.error("`(*END_PHRASE*)` without `(*PHRASE*)`");
                 self.bump_error();
+            } else if self.at_keyword(Keyword::Rung) {
+                self.rungs();
+            } else if self.state.dialect == Dialect::Ld {
+                self.between_rungs();
             } else {
                 self.sentence();
             }
@@ -126,7 +132,7 @@ impl<'t> Grammar<'_, 't> {
                 Some(Ident) if self.at_heading() || self.at_program_line() => break,
                 Some(_) => match self.state.dialect {
                     Dialect::Il => self.instruction(&mut content),
-                    Dialect::St => {
+                    Dialect::St | Dialect::Ld => {
                         self.statement(!content.has_code);
                         content.has_code = true;
                     }
@@ -161,7 +167,7 @@ impl<'t> Grammar<'_, 't> {
     }
 
     /// `ST : MAST - SR10`.
-    fn at_heading(&self) -> bool {
+    pub(super) fn at_heading(&self) -> bool {
         self.p.at(Ident)
             && self.p.nth(1) == Some(Colon)
             && self.p.nth(2) == Some(Ident)
@@ -189,7 +195,7 @@ impl<'t> Grammar<'_, 't> {
     }
 
     /// `PROGRAM MAST'SR1'`, whose blanks may be missing, and `END_PROGRAM`.
-    fn at_program_line(&self) -> bool {
+    pub(super) fn at_program_line(&self) -> bool {
         if !self.p.at(Ident) {
             return false;
         }
@@ -243,7 +249,7 @@ impl<'t> Grammar<'_, 't> {
     pub(super) fn at_boundary(&self) -> bool {
         match self.p.current() {
             None | Some(Bang | SentenceStart | SentenceEnd) => true,
-            Some(Ident) => self.at_program_line(),
+            Some(Ident) => self.keyword().is_some_and(Keyword::is_of_ladder) || self.at_program_line(),
             _ => false,
         }
     }
@@ -404,6 +410,7 @@ impl<'t> Grammar<'_, 't> {
             && match self.state.dialect {
                 Dialect::Il => true,
                 Dialect::St => self.at_statement_start(),
+                Dialect::Ld => false,
             }
     }
 

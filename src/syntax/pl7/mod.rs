@@ -1,7 +1,8 @@
-//! PL7 instruction list and structured text, in the exchange form and as pasted in documents.
+//! PL7 instruction list, structured text and ladder, in the exchange form and as pasted in documents.
 //!
-//! One lexer, one expression grammar and one frame of sentences serve both languages. The tree is
-//! `Root > Sentence > (LabelDef | IlInstr | statement)*`; [`ast`] gives it types.
+//! One lexer, one expression grammar and one frame of sentences serve the first two. The tree is
+//! `Root > Sentence > (LabelDef | IlInstr | statement)*`, of ladder `Root > Rung > (LabelDef | RungRow > Cell)*`; [`ast`]
+//! gives it types.
 
 pub mod ast;
 mod expr;
@@ -9,6 +10,8 @@ pub mod functions;
 mod grammar;
 mod il;
 pub mod instructions;
+mod ladder;
+pub mod ladder_words;
 mod lexer;
 mod st;
 mod word;
@@ -22,6 +25,11 @@ use grammar::Dialect;
 /// Parses one unit of instruction list. Total and linear for every text.
 pub fn parse_il(text: &str) -> Parse {
     grammar::parse(text, Dialect::Il)
+}
+
+/// Parses one unit of ladder. Total and linear for every text.
+pub fn parse_ld(text: &str) -> Parse {
+    grammar::parse(text, Dialect::Ld)
 }
 
 /// Parses one unit of structured text. Total and linear for every text.
