@@ -160,6 +160,9 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let mut facts = UnitFacts::new(&model);
     facts.has_gaps |=
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
+    if let Some(chart) = &mut facts.chart {
+        chart.has_gaps = !tree.errors().is_empty();
+    }
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
     let target = settings.target_or(family, *named_controller(db, unit.file(db)));
@@ -745,6 +748,8 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
         (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),
         (_, Some(Language::Pl7St)) => "PL7 structured text".to_owned(),
+        (_, Some(Language::Pl7Gr7)) => "PL7 Grafcet".to_owned(),
+        (_, Some(Language::Sfc)) => "textual SFC".to_owned(),
         (_, Some(Language::Pl7Ld)) => "PL7 ladder".to_owned(),
         _ => "PLC text".to_owned(),
     }

@@ -63,6 +63,8 @@ fn examples(rule: &Rule) -> Vec<Example> {
                 "st" => Dialect::Pl7St,
                 "ld" => Dialect::Pl7Ld,
                 "pl7" => Dialect::Pl7,
+                "gr7" => Dialect::Pl7Gr7,
+                "sfc" => Dialect::Sfc,
                 other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
             };
             assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
@@ -130,6 +132,7 @@ fn every_dialect_has_its_examples() {
                 "il" => &[Dialect::Pl7Il],
                 "st" => &[Dialect::Pl7St],
                 "ld" => &[Dialect::Pl7Ld],
+                "g7" => &[Dialect::Pl7Gr7],
                 // Read in a later version.
                 "s5" | "pl72" => &[],
                 other => panic!("{}: dialect `{other}`", rule.name),

@@ -7,8 +7,10 @@ use std::hash::BuildHasher as _;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
+use super::chart::ChartFacts;
 use super::{conditions, gaps};
 use crate::model::UnitModel;
+use crate::model::chart::CodeLanguage;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
@@ -136,6 +138,8 @@ pub struct UnitFacts {
     pub writes_indirectly: bool,
     /// The unit, or some of it, was not understood: what seems to be missing may stand there.
     pub has_gaps: bool,
+    /// What the unit holds of a chart.
+    pub chart: Option<Box<ChartFacts>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -145,6 +149,14 @@ const MAX_COMPARED: usize = 48;
 const MAX_COMPARISONS: u32 = 1000;
 
 impl UnitFacts {
+    /// Whether a place is one of structured text.
+    pub fn is_structured_text(&self, anchor: u32) -> bool {
+        match self.chart.as_ref().filter(|_| self.language.is_chart()) {
+            Some(chart) => chart.action_at(anchor).is_some_and(|it| it.language == Some(CodeLanguage::St)),
+            None => self.language == Language::Pl7St,
+        }
+    }
+
     pub fn new(model: &UnitModel) -> Self {
         let numbers = numbers(model);
         let mut given = Given { values: vec![None; model.accesses.len()], whens: vec![None; model.accesses.len()] };
@@ -242,6 +254,7 @@ impl UnitFacts {
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
+            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity))),
         }
     }
 }

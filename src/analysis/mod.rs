@@ -4,6 +4,7 @@
 
 pub mod calls;
 pub mod channels;
+pub mod chart;
 pub mod conditions;
 pub mod counts;
 pub mod drives;

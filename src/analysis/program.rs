@@ -1,9 +1,12 @@
 //! A program as a whole: the access table over all units, the call graph, and what scans what.
 
+use std::cell::OnceCell;
+
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Site;
+use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
@@ -148,6 +151,7 @@ pub struct ProgramIndex<'a> {
     exclusive: FxHashSet<(u32, u32, u32)>,
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
+    charts: OnceCell<Vec<Chart<'a>>>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -195,11 +199,20 @@ impl<'a> ProgramIndex<'a> {
             exclusive,
             exclusive_uses,
             names,
+            charts: OnceCell::new(),
         }
+    }
+
+    /// The charts of the program, whose pages are joined.
+    pub fn charts(&self) -> &[Chart<'a>] {
+        self.charts.get_or_init(|| chart::join(&self.units))
     }
 
     /// Whether two writes of one object can both take effect in one scan.
     pub fn clash(&self, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
+        if chart::in_different_steps(self.units[a.unit as usize], a.it, self.units[b.unit as usize], b.it) {
+            return false;
+        }
         if a.unit != b.unit {
             return self.same_scan(a.unit, b.unit);
         }

@@ -79,11 +79,19 @@ impl Rule {
             "all" => true,
             "pl7" => matches!(
                 language,
-                Language::Pl7Il | Language::Pl7St | Language::Pl7Ld | Language::Exchange | Language::Pl7Xref
+                Language::Pl7Il
+                    | Language::Pl7St
+                    | Language::Pl7Ld
+                    | Language::Pl7Gr7
+                    | Language::Sfc
+                    | Language::Exchange
+                    | Language::Pl7Xref
             ),
             "ld" => language == Language::Pl7Ld,
-            "il" => language == Language::Pl7Il,
-            "st" => language == Language::Pl7St,
+            // The actions and receptivities of a chart are in any of the languages.
+            "il" => language == Language::Pl7Il || language.is_chart(),
+            "st" => language == Language::Pl7St || language.is_chart(),
+            "g7" => language.is_chart(),
             "s7" => matches!(language, Language::Awl(_)),
             _ => false,
         })
@@ -92,7 +100,7 @@ impl Rule {
     /// Whether programs of a family are among what the rule looks at.
     pub fn is_for_family(&self, family: Family) -> bool {
         self.dialects.iter().any(|dialect| match family {
-            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld"),
+            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld" | "g7"),
             Family::Pl72 => matches!(*dialect, "all" | "pl72"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })

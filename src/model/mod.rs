@@ -2,6 +2,7 @@
 //!
 //! **Invariant:** this module knows no rule.
 
+pub mod chart;
 pub mod entity;
 pub mod expr;
 pub mod ladder;

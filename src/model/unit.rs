@@ -9,6 +9,7 @@ use rowan::TextRange;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
+use super::chart::{Chart, CodeLanguage};
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
@@ -229,6 +230,8 @@ pub struct Label {
     pub range: TextRange,
     /// Index of the first statement after it.
     pub statement: u32,
+    /// The piece of code that it belongs to, as [`Jump::part`].
+    pub part: u32,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -245,6 +248,8 @@ pub struct Jump {
     pub when: ExprId,
     /// The first label of that name, an index into [`UnitModel::labels`].
     pub target: Option<u32>,
+    /// Number of the piece of code, with labels of its own, that it belongs to: an action of a chart. 0 elsewhere.
+    pub part: u32,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -511,6 +516,8 @@ pub struct UnitModel {
     pub has_gaps: bool,
     /// Somewhere a floating-point number meets a number that may not be one.
     pub mixes_floats: bool,
+    /// What the unit holds of a chart.
+    pub chart: Option<Box<Chart>>,
 }
 
 impl UnitModel {
@@ -520,6 +527,14 @@ impl UnitModel {
 
     pub fn statement(&self, access: &Access) -> Option<&Statement> {
         self.statements.get(access.statement as usize)
+    }
+
+    /// Whether an access is one of structured text.
+    pub fn is_structured_text(&self, access: &Access) -> bool {
+        match self.chart.as_ref().filter(|_| self.language.is_chart()) {
+            Some(chart) => chart.action_at(access.anchor).is_some_and(|it| it.language == Some(CodeLanguage::St)),
+            None => self.language == Language::Pl7St,
+        }
     }
 
     /// Place of an anchor; the heading when there is none.

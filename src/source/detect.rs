@@ -25,12 +25,24 @@ pub enum Dialect {
     Pl7,
     Pl7Il,
     Pl7St,
+    Pl7Gr7,
     Pl7Ld,
     Pl72,
+    Sfc,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 7] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St, Self::Pl7Ld, Self::Pl72];
+    pub const ALL: [Self; 9] = [
+        Self::Auto,
+        Self::Step7,
+        Self::Pl7,
+        Self::Pl7Il,
+        Self::Pl7St,
+        Self::Pl7Ld,
+        Self::Pl7Gr7,
+        Self::Pl72,
+        Self::Sfc,
+    ];
 
     pub fn as_str(self) -> &'static str {
         match self {
@@ -39,8 +51,10 @@ impl Dialect {
             Self::Pl7 => "pl7",
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
+            Self::Pl7Gr7 => "pl7-gr7",
             Self::Pl7Ld => "pl7-ld",
             Self::Pl72 => "pl7-2",
+            Self::Sfc => "sfc",
         }
     }
 }
@@ -57,7 +71,8 @@ pub struct UnknownDialect(pub String);
 
 impl fmt::Display for UnknownDialect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st, pl7-ld or pl7-2", self.0)
+        let known: Vec<&str> = Dialect::ALL.iter().map(|it| it.as_str()).collect();
+        write!(f, "unknown dialect `{}`, expected one of {}", self.0, known.join(", "))
     }
 }
 
@@ -78,6 +93,10 @@ impl FromStr for Dialect {
 pub enum Pl7Text {
     Il,
     St,
+    /// Pages of Grafcet in the exchange form.
+    Gr7,
+    /// A chart in the textual form of IEC 61131-3.
+    Sfc,
     Ld,
 }
 
@@ -113,8 +132,7 @@ pub struct FileHint<'p> {
 
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
-    pub const GRAFCET: &str = "PL7 Grafcet (GR7)";
-    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST and LD";
+    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST, LD and GR7";
     pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
@@ -127,7 +145,6 @@ pub mod unsupported {
     pub const STEP5: &str = "STEP 5 program";
     pub const SYMBOLS: &str = "STEP 7 symbol table";
     pub const IEC: &str = "IEC 61131-3 text that is not PL7";
-    pub const SFC: &str = "IEC 61131-3 textual SFC";
 
     /// Whether such a file holds code that may use any object and call any block.
     pub fn is_code(what: &str) -> bool {
@@ -273,25 +290,30 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
         Dialect::Step7 => Detected::Step7,
-        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl7Ld | Dialect::Pl72 if tally.is_exchange() => {
+        Dialect::Pl7
+        | Dialect::Pl7Il
+        | Dialect::Pl7St
+        | Dialect::Pl7Ld
+        | Dialect::Pl7Gr7
+        | Dialect::Pl72
+        | Dialect::Sfc
+            if tally.is_exchange() =>
+        {
             Detected::Exchange
         }
         Dialect::Pl7 => Detected::Pasted(tally.pl7_text(extension(hint.path))),
         Dialect::Pl7Il => Detected::Pasted(Pl7Text::Il),
         Dialect::Pl7St => Detected::Pasted(Pl7Text::St),
+        Dialect::Pl7Gr7 => Detected::Pasted(Pl7Text::Gr7),
         Dialect::Pl7Ld => Detected::Pasted(Pl7Text::Ld),
         Dialect::Pl72 => Detected::Pl72,
+        Dialect::Sfc => Detected::Pasted(Pl7Text::Sfc),
     }
 }
 
 /// The language of PL7 text that no heading and no file name tells.
 pub(super) fn pl7_text(text: &str) -> Pl7Text {
     Tally::of(text).pl7_text(Extension::Other)
-}
-
-/// The form of PL7 text that is not read, by its content.
-pub(super) fn pl7_unsupported(text: &str) -> Option<&'static str> {
-    Tally::of(text).pl7_unsupported()
 }
 
 fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) -> Detected {
@@ -338,8 +360,8 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         // A sentence or an expression alone: nothing but what has addresses or marks of PL7.
         Extension::Il | Extension::St if tally.pl7 == tally.lines => Detected::Pasted(tally.pl7_text(extension)),
         Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
-        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Unsupported { what: unsupported::GRAFCET },
-        Extension::Sfc if tally.chart > 0 => Detected::Unsupported { what: unsupported::SFC },
+        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
+        Extension::Sfc if tally.chart > 0 => Detected::Pasted(Pl7Text::Sfc),
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
         Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
@@ -401,7 +423,11 @@ struct Tally {
     /// Words that frame rungs, and elements of them.
     rung: u32,
     cells: u32,
+    /// Words of charts, and those among them that only the pages of PL7 have.
     chart: u32,
+    pages: u32,
+    /// Lines of charts that start with a word which other texts have too.
+    chart_words: u32,
     /// Words of S7-GRAPH.
     graph: u32,
     step5: u32,
@@ -472,7 +498,7 @@ impl Tally {
                 self.st += 1;
                 self.scl += u32::from(self.in_code_block);
             }
-            Some(Pl7Text::Ld) | None => {}
+            Some(Pl7Text::Ld | Pl7Text::Gr7 | Pl7Text::Sfc) | None => {}
         }
         match first {
             "RUNG" | "END_RUNG" => self.rung += 1,
@@ -481,8 +507,14 @@ impl Tally {
                 self.rung += 1;
                 self.cells += 1;
             }
-            "NB_PAGES" | "END_PAGE" | "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "T_S_OR_LINK"
-            | "S_T_OR_LINK" => self.chart += 1,
+            "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK" => {
+                self.chart += 1;
+                self.pages += 1;
+            }
+            "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" => self.chart += 1,
+            "STEP" | "TRANSITION" | "ACTION" | "END_ACTION" | "PAGE" if is_chart_line(code, first) => {
+                self.chart_words += 1;
+            }
             "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
             "VAR_GLOBAL" | "PROGRAM" | "END_PROGRAM" | "CONFIGURATION" | "VAR_EXTERNAL" => self.iec += 1,
             "VAR" | "VAR_INPUT" | "VAR_OUTPUT" | "VAR_IN_OUT" | "END_VAR" => {
@@ -558,6 +590,11 @@ impl Tally {
             return Some(Detected::Step7);
         }
         let structure = if self.st > 0 { self.scl } else { 0 };
+        let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
+        let is_chart = self.chart > 0 && self.chart + self.chart_words > 2 && self.graph == 0;
+        if is_chart && charted && (self.pages > 1 || self.pl7 > 0 && self.iec == 0) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
         if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
@@ -565,6 +602,10 @@ impl Tally {
     }
 
     fn pl7_text(&self, extension: Extension) -> Pl7Text {
+        // Under headings, each unit says what it is.
+        if self.chart > 0 && self.headings() == 0 {
+            return if self.pages > 0 { Pl7Text::Gr7 } else { Pl7Text::Sfc };
+        }
         // Of all words, those of rungs are the least ambiguous; a line of a rung may look like a line of other languages.
         let (il, st, ld) = match (self.headings_il, self.headings_st, self.headings_ld) {
             (0, 0, 0) => (self.il, self.st, self.cells),
@@ -579,9 +620,18 @@ impl Tally {
             _ => Pl7Text::St,
         }
     }
+}
 
-    fn pl7_unsupported(&self) -> Option<&'static str> {
-        (self.chart > 0).then_some(unsupported::GRAFCET)
+/// Whether a line that starts with a common word is one of a chart: `STEP 3 AT (C 4,L 3) :`, `TRANSITION FROM X0 TO X1`.
+fn is_chart_line(code: &str, first: &str) -> bool {
+    let rest = word(code).1.trim_start();
+    let next = word(rest).0;
+    match first {
+        "STEP" => rest.contains(':'),
+        "ACTION" => rest.starts_with('(') || rest.contains(':'),
+        "TRANSITION" => rest.starts_with('(') || ["AT", "FROM"].iter().any(|it| it.eq_ignore_ascii_case(next)),
+        "PAGE" => !next.is_empty() && next.bytes().all(|it| it.is_ascii_digit()),
+        _ => true,
     }
 }
 
@@ -958,7 +1008,7 @@ mod tests {
         check("a.scy", "Dear reader", unsupported(unsupported::VARIABLES));
         check("a.ufb", "[HEADER]\n[SOURCE_UNIT]\nA8F0\n[EOF]", unsupported(unsupported::ENCRYPTED));
         check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
-        check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", unsupported(unsupported::GRAFCET));
+        check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", Detected::Pasted(Pl7Text::Gr7));
         check(
             "a.gr7",
             "FUNCTION_BLOCK \"x\"\nVAR\nEND_VAR\nGRAPH7\nSEQUENCE\nINITIAL_STEP S1:\n",
@@ -970,7 +1020,22 @@ mod tests {
         check("a.sdf", "\"a\",\"I 0.0\",\"BOOL\",\"x\"\n", unsupported(unsupported::SYMBOLS));
         check("a.asc", "126,Pump                    E       0.0 BOOL      x\n", unsupported(unsupported::SYMBOLS));
         check("a.seq", "\tPump\tE 0.0\tcomment\n", unsupported(unsupported::SYMBOLS));
-        check("a.sfc", "INITIAL_STEP X0 : END_STEP", unsupported(unsupported::SFC));
+        check("a.sfc", "INITIAL_STEP X0 : END_STEP", Detected::Pasted(Pl7Text::Sfc));
+        check("a.sfc", "<svg/>", Detected::NotPlc);
+    }
+
+    #[test]
+    fn charts() {
+        let page = "NB_PAGES = 8\nPAGE 0\nINITIAL_STEP 0 AT (C 4,L 1) :\nEND_STEP\nTRANSITION (ST) AT (C 4,L 2) :\n\
+                    (*PHRASE*) %I1.0 (*END_PHRASE*)\nEND_TRANSITION\nEND_PAGE\n";
+        let textual = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); END_STEP\n\
+                       TRANSITION FROM X0 TO X1 := %I1.0 AND NOT %M3; END_TRANSITION\n\
+                       ACTION Fill : %Q2.0 := TRUE; END_ACTION\n";
+        for path in ["a.txt", "a.gr7", "a.st", "a.sfc"] {
+            check(path, page, Detected::Pasted(Pl7Text::Gr7));
+            check(path, textual, Detected::Pasted(Pl7Text::Sfc));
+        }
+        check("a.txt", "Step 1: open the valve\nStep 2: close it\nAction: none\n", Detected::NotPlc);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::detect::{Detected, Pl7Text, pl7_text, pl7_unsupported, unsupported};
+use super::detect::{Detected, Pl7Text, pl7_text, unsupported};
 use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_address, pl7_heading,
     strip_prefix_ignore_case, word,
@@ -178,6 +178,25 @@ struct Units<'t> {
 }
 
 impl Units<'_> {
+    /// A page of the chart that the last draft belongs to: the draft itself when it has no page yet. `pages` counts them.
+    fn page(&mut self, page: u32, pages: &mut u32) {
+        *pages += 1;
+        let at = self.code_end;
+        let Some(last) = self.drafts.last_mut() else { return };
+        if *pages == 1 {
+            name_page(&mut last.entity, page);
+        } else {
+            let mut draft = last.clone();
+            name_page(&mut draft.entity, page);
+            self.push(at, draft);
+        }
+    }
+
+    /// Whether the last draft is of a chart.
+    fn in_chart(&self) -> bool {
+        self.drafts.last().is_some_and(|it| it.language == Some(Language::Pl7Gr7))
+    }
+
     fn push(&mut self, start: usize, draft: Draft) {
         self.drafts.push(Draft { start, ..draft });
     }
@@ -194,8 +213,7 @@ impl Units<'_> {
                 Some(language) => (language, draft.unsupported),
                 None => {
                     let text = self.text.get(draft.start..end).unwrap_or_default();
-                    let form = draft.unsupported.or_else(|| pl7_unsupported(text));
-                    (if form.is_some() { Language::Exchange } else { pl7_language(pl7_text(text)) }, form)
+                    (pl7_language(pl7_text(text)), draft.unsupported)
                 }
             };
             UnitSpan {
@@ -239,6 +257,29 @@ fn pl7_language(text: Pl7Text) -> Language {
         Pl7Text::Il => Language::Pl7Il,
         Pl7Text::St => Language::Pl7St,
         Pl7Text::Ld => Language::Pl7Ld,
+        Pl7Text::Gr7 => Language::Pl7Gr7,
+        Pl7Text::Sfc => Language::Sfc,
+    }
+}
+
+/// `PAGE 3`, the line that starts a page of a chart: its number.
+fn page_line(code: &str) -> Option<u32> {
+    if !code.starts_with(['P', 'p']) {
+        return None;
+    }
+    let (first, rest) = word(code);
+    let number = word(rest.trim_start()).0;
+    first.eq_ignore_ascii_case("PAGE").then(|| number.parse().ok())?
+}
+
+/// Names a unit of a chart after its page.
+fn name_page(entity: &mut Entity, page: u32) {
+    if let Entity::Pl7 { part: part @ (Part::Chart(_) | Part::Main), .. } = entity {
+        let graph = match &*part {
+            Part::Chart(rest) => rest.split(' ').next().filter(|it| !it.is_empty()).unwrap_or("CHART").to_owned(),
+            _ => "CHART".to_owned(),
+        };
+        *part = Part::Chart(format_smolstr!("{graph} - PAGE {page}"));
     }
 }
 
@@ -314,9 +355,12 @@ fn mnemonics(text: &str) -> Mnemonics {
 /// PL7 as it is pasted in documents: headings, and code before the first one.
 fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
     let unnamed = || {
-        let main = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let is_chart = matches!(default, Pl7Text::Gr7 | Pl7Text::Sfc);
+        let part = if is_chart { Part::Chart("CHART".into()) } else { Part::Main };
+        let main = Entity::Pl7 { task: Task::Mast, section: None, part };
         Draft::new(hint.entity.clone().unwrap_or(main), Some(pl7_language(default)))
     };
+    let mut pages = 0;
     for line in Lines::new(units.text, Comments::Pl7) {
         if line.code.is_empty() {
             continue;
@@ -327,11 +371,17 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
                 HeadingLanguage::Il => (Language::Pl7Il, None),
                 HeadingLanguage::St => (Language::Pl7St, None),
                 HeadingLanguage::Ladder => (Language::Pl7Ld, None),
-                HeadingLanguage::Grafcet => (Language::Exchange, Some(unsupported::GRAFCET)),
+                HeadingLanguage::Grafcet => (Language::Pl7Gr7, None),
             };
             units.push(units.code_end, Draft { unsupported, ..Draft::new(heading.entity, Some(language)) });
+            pages = 0;
         } else if units.drafts.is_empty() {
             units.push(0, unnamed());
+        }
+        if units.in_chart()
+            && let Some(page) = page_line(line.code)
+        {
+            units.page(page, &mut pages);
         }
         units.code_end = line.end;
     }
@@ -374,6 +424,7 @@ fn exchange(units: &mut Units<'_>) {
     }
     let mut state = State::Ended;
     let mut keys = SourceUnit::default();
+    let mut pages = 0;
     let mut lines = Lines::new(units.text, Comments::Pl7);
     while let Some(line) = lines.next() {
         if line.code.is_empty() {
@@ -406,9 +457,15 @@ fn exchange(units: &mut Units<'_>) {
                     let start = if at == line.code_start { units.code_end } else { at };
                     units.push(start, draft);
                     state = State::Program;
+                    pages = 0;
                 }
             }
             State::Program if ends_program(code) => state = State::Ended,
+            State::Program if units.in_chart() => {
+                if let Some(page) = page_line(code) {
+                    units.page(page, &mut pages);
+                }
+            }
             _ => {}
         }
         units.code_end = line.end;
@@ -541,7 +598,10 @@ impl<'t> SourceUnit<'t> {
             ("IL", _) => (Some(Language::Pl7Il), None),
             ("ST", _) => (Some(Language::Pl7St), None),
             ("LD", _) => (Some(Language::Pl7Ld), None),
-            (_, "GR7") | ("GR7", _) => (Some(Language::Exchange), Some(unsupported::GRAFCET)),
+            (_, "GR7") | ("GR7", _) => (Some(Language::Pl7Gr7), None),
+            ("" | "OTHERS", "") if matches!(entity, Entity::Pl7 { part: Part::Chart(_), .. }) => {
+                (Some(Language::Pl7Gr7), None)
+            }
             ("", _) => (None, None),
             _ => (Some(Language::Exchange), Some(unsupported::OTHER_LANGUAGE)),
         };
@@ -618,6 +678,7 @@ mod tests {
     const ST: Language = Language::Pl7St;
     const LD: Language = Language::Pl7Ld;
     const IL: Language = Language::Pl7Il;
+    const GR7: Language = Language::Pl7Gr7;
     const KEYS: Language = Language::Exchange;
 
     /// Keys, languages and texts of the units, the form of unsupported ones instead of their language.
@@ -750,11 +811,11 @@ mod tests {
                 ("FAST - MAIN", LD, "LD : FAST - MAIN\nRUNG\n"),
                 ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
                 ("MAST - PRL", KEYS, "ST : PL7-2 - PRL\n"),
-                ("MAST - Peinture - CHART", KEYS, "GR7 : MAST - Peinture - CHART\n"),
+                ("MAST - Peinture - CHART", GR7, "GR7 : MAST - Peinture - CHART\n"),
             ],
         );
-        use super::unsupported::{GRAFCET, PL7_2};
-        let expected = [None, None, None, None, None, Some(PL7_2), Some(PL7_2), Some(GRAFCET)];
+        use super::unsupported::PL7_2;
+        let expected = [None, None, None, None, None, Some(PL7_2), Some(PL7_2), None];
         assert_eq!(unsupported(&units), expected);
     }
 
@@ -813,7 +874,7 @@ mod tests {
 
     #[test]
     fn programs_of_exchange_files() {
-        use super::unsupported::{DFB, GRAFCET, OTHER_LANGUAGE};
+        use super::unsupported::{DFB, OTHER_LANGUAGE};
         for (keys, program, expected, language, form) in [
             ("ADDRESS = MAST SR1", "PROGRAM", "MAST - SR1", ST, None),
             ("NAME = 'FAST_MAIN' LANGUAGE = IL ADDRESS = FAST MAIN", "PROGRAM", "FAST - MAIN", IL, None),
@@ -824,10 +885,12 @@ mod tests {
                 "LANGUAGE = OTHERS ADDRESS = MAST Chart PROG_LANGAGE = GR7 NAME = 'MAST_Chart'",
                 "PROGRAM MAST 'Chart'",
                 "MAST - CHART",
-                KEYS,
-                Some(GRAFCET),
+                GR7,
+                None,
             ),
-            ("LANGUAGE = OTHERS", "PROGRAMMAST'Chart'", "MAST - CHART", KEYS, Some(OTHER_LANGUAGE)),
+            ("LANGUAGE = OTHERS", "PROGRAMMAST'Chart'", "MAST - CHART", GR7, None),
+            ("LANGUAGE = OTHERS", "PROGRAM", "MAST - MAIN", KEYS, Some(OTHER_LANGUAGE)),
+            ("ADDRESS = MAST MACRO2", "PROGRAM", "MAST - MACRO2", GR7, None),
             ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", LD, None),
             ("NAME = 'x'", "PROGRAM\nRUNG\nH_LINK(10),COIL(%M0);\nEND_RUNG", "MAST - x", LD, None),
             ("NAME = 'x'", "PROGRAM\n LD %M0\n ST %M1", "MAST - x", IL, None),
@@ -841,6 +904,42 @@ mod tests {
             assert_eq!((unit.key.as_str(), unit.language, unit.unsupported), (expected, language, form), "{keys}");
             assert!(text[unit.range].starts_with(program), "{keys}");
         }
+    }
+
+    /// An edit in one page re-parses that page.
+    #[test]
+    fn pages_are_units() {
+        check(
+            Detected::Exchange,
+            "[SOURCE_UNIT]\nNAME='Peinture_Chart' ADDRESS=MAST Chart PROG_LANGAGE=GR7\nPROGRAM MAST 'Chart'\nNB_PAGES = 8\n\
+             PAGE 0\nSTEP 0 AT (C 0,L 1) :\nEND_STEP\nEND_PAGE\n(* next *)\nPAGE 1\nEND_PAGE\nEND_PROGRAM\n[EOF]\n",
+            &[
+                (
+                    "[SOURCE_UNIT] MAST - Peinture - CHART",
+                    KEYS,
+                    "[SOURCE_UNIT]\nNAME='Peinture_Chart' ADDRESS=MAST Chart PROG_LANGAGE=GR7\n",
+                ),
+                (
+                    "MAST - Peinture - CHART - PAGE 0",
+                    GR7,
+                    "PROGRAM MAST 'Chart'\nNB_PAGES = 8\nPAGE 0\nSTEP 0 AT (C 0,L 1) :\nEND_STEP\nEND_PAGE\n",
+                ),
+                ("MAST - Peinture - CHART - PAGE 1", GR7, "(* next *)\nPAGE 1\nEND_PAGE\nEND_PROGRAM\n"),
+                ("[EOF]", KEYS, "[EOF]\n"),
+            ],
+        );
+        check(
+            Detected::Pasted(Pl7Text::St),
+            "GR7 : MAST - Peinture - CHART\nPAGE 0\nPAGE 0\nGR7 : MAST - Peinture - MACRO2\nPAGE 3\nST : MAST - SR1\nPAGE 1\n",
+            &[
+                ("MAST - Peinture - CHART - PAGE 0", GR7, "GR7 : MAST - Peinture - CHART\nPAGE 0\n"),
+                ("MAST - Peinture - CHART - PAGE 0#2", GR7, "PAGE 0\n"),
+                ("MAST - Peinture - MACRO2 - PAGE 3", GR7, "GR7 : MAST - Peinture - MACRO2\nPAGE 3\n"),
+                ("MAST - SR1", ST, "ST : MAST - SR1\nPAGE 1\n"),
+            ],
+        );
+        check(Detected::Pasted(Pl7Text::Gr7), "PAGE 2\n", &[("MAST - CHART - PAGE 2", GR7, "PAGE 2\n")]);
+        check(Detected::Pasted(Pl7Text::Sfc), "STEP A:", &[("MAST - CHART", Language::Sfc, "STEP A:")]);
     }
 
     #[test]

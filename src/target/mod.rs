@@ -250,6 +250,23 @@ impl Target {
         self.processor().map(|it| it.chart_max).or(largest)
     }
 
+    /// Branches of one divergence or convergence of a chart.
+    pub const fn chart_branches(&self) -> Option<Limit> {
+        match self.family {
+            Family::Pl7 => Some(pl7::BRANCHES),
+            Family::Pl72 => Some(pl72::OR_BRANCHES_OUT),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Pages of a chart, then lines and columns of a page.
+    pub const fn chart_pages(&self) -> Option<(Limit, Limit, Limit)> {
+        match self.family {
+            Family::Pl7 => Some((pl7::CHART_PAGES, pl7::PAGE_LINES, pl7::PAGE_COLUMNS)),
+            Family::Pl72 | Family::Step7 => None,
+        }
+    }
+
     /// What one event may exchange; `None` when the controller is unknown: the series count differently.
     pub fn exchanges(&self) -> Option<pl7::Exchanges> {
         self.processor().map(|it| it.exchanges)

@@ -2,6 +2,7 @@
 
 mod awl;
 mod builder;
+mod chart;
 mod exchange;
 mod il;
 mod ladder;
@@ -23,6 +24,7 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Exchange => exchange::lower(root, text, entity),
         Language::Pl7Xref => xref::lower(root, entity),
         Language::Pl7Ld => ladder::lower(root, text, entity),
+        Language::Pl7Gr7 | Language::Sfc => chart::lower(root, text, entity, language),
     }
 }
 

@@ -1,10 +1,11 @@
-//! PL7 instruction list, structured text and ladder, in the exchange form and as pasted in documents.
+//! PL7 instruction list, structured text, ladder and Grafcet, in the exchange form and as pasted in documents.
 //!
 //! One lexer, one expression grammar and one frame of sentences serve the first two. The tree is
 //! `Root > Sentence > (LabelDef | IlInstr | statement)*`, of ladder `Root > Rung > (LabelDef | RungRow > Cell)*`; [`ast`]
 //! gives it types.
 
 pub mod ast;
+pub mod chart;
 mod expr;
 pub mod functions;
 mod grammar;
@@ -43,4 +44,9 @@ pub fn is_reserved(text: &str) -> bool {
         || instructions::lookup(text).is_some()
         || functions::lookup(text).is_some()
         || word::subroutine(text).is_some()
+}
+
+/// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
+pub fn parse_chart(text: &str) -> Parse {
+    grammar::parse_chart(text)
 }
