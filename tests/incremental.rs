@@ -44,6 +44,27 @@ IL : MAST - SR4
       ST    %Q2.3
 ";
 
+const CHART: &str = "\
+[SOURCE_UNIT]
+NAME = 'Peinture_Chart' ADDRESS = MAST Chart PROG_LANGAGE = GR7
+PROGRAM MAST 'Chart'
+NB_PAGES = 8
+PAGE 0
+INITIAL_STEP 0 AT (C 0,L 1) :
+ACTION (N1,ST) : (*PHRASE*) %Q2.0 := %I1.0; (*END_PHRASE*) END_ACTION
+END_STEP
+TRANSITION (ST) AT (C 0,L 2) : (*PHRASE*) %I1.1 (*END_PHRASE*) END_TRANSITION
+DEST_CONNECTOR 1 AT (C 0,L 3)
+END_PAGE
+PAGE 1
+SOURCE_CONNECTOR 0 AT (C 0,L 0)
+STEP 1 AT (C 0,L 1) :
+END_STEP
+END_PAGE
+END_PROGRAM
+[EOF]
+";
+
 struct Setup {
     db: RootDatabase,
     events: EventLog,
@@ -132,6 +153,24 @@ fn an_edit_in_one_sentence_runs_that_entity_alone() {
     let executed = setup.executed();
     assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
     assert_eq!(Setup::count(&executed, "program_findings"), 0, "{executed:?}");
+}
+
+#[test]
+fn an_edit_in_a_page_runs_that_page_alone() {
+    let mut setup = setup(&[("peinture.gr7", CHART, Dialect::Auto)]);
+    let count = |messages: &[String], code: &str| messages.iter().filter(|it| it.starts_with(code)).count();
+    assert_eq!(count(&setup.check(), "G005"), 0);
+    setup.edit(0, "STEP 1 AT (C 0,L 1)", "(* fill *)\nSTEP 1 AT (C 0,L 1)");
+    setup.check();
+    let executed = setup.executed();
+    assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
+    assert_eq!(Setup::count(&executed, "program_findings"), 0, "{executed:?}");
+    // A connector that leads elsewhere is a matter of both pages.
+    setup.edit(0, "SOURCE_CONNECTOR 0", "SOURCE_CONNECTOR 5");
+    let messages = setup.check();
+    let executed = setup.executed();
+    assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
+    assert_eq!(count(&messages, "G005"), 2, "{messages:?}");
 }
 
 #[test]

@@ -506,8 +506,10 @@ fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<
     let mut order = vec![u32::MAX; units.len()];
     let mut next = 0;
     let mut entries: Vec<usize> = (0..units.len()).filter(|&it| is_entry(&units[it].entity)).collect();
-    if family == Family::Pl72 {
-        entries.sort_by_key(|&it| pl7_2_rank(&units[it].entity));
+    match family {
+        Family::Pl72 => entries.sort_by_key(|&it| pl7_2_rank(&units[it].entity)),
+        Family::Pl7 => order_sections(units, &mut entries),
+        Family::Step7 => {}
     }
     for root in entries.into_iter().chain(0..units.len()) {
         let mut stack = vec![as_index(root)];
@@ -521,6 +523,27 @@ fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<
         }
     }
     order
+}
+
+/// The parts of a Grafcet section run one after the other wherever they are written: preliminary processing, chart, posterior
+/// processing (PL7:4895). They take the place of the first of them.
+fn order_sections(units: &[&UnitFacts], entries: &mut [usize]) {
+    let part = |it: usize| match &units[it].entity {
+        Entity::Pl7 { task, section, part: Part::Preliminary } => Some(((*task, section.as_ref()), 0)),
+        Entity::Pl7 { task, section, part: Part::Chart(_) } => Some(((*task, section.as_ref()), 1)),
+        Entity::Pl7 { task, section, part: Part::Posterior } => Some(((*task, section.as_ref()), 2)),
+        _ => None,
+    };
+    let mut first = FxHashMap::default();
+    for &it in entries.iter() {
+        if let Some((section, _)) = part(it) {
+            first.entry(section).or_insert(it);
+        }
+    }
+    entries.sort_by_key(|&it| match part(it) {
+        Some((section, rank)) => (first.get(&section).copied().unwrap_or(it), rank),
+        None => (it, 0),
+    });
 }
 
 /// Preliminary, sequential, posterior processing of the master task (PL72:1505-1511); the fast task interrupts them.
@@ -669,6 +692,20 @@ mod tests {
         let units = units(&["PL7-2 FAST", "PL7-2 POST", "PL7-2 SEQ - X1", "PL7-2 PRL", "PL7-2 SEQ"]);
         let order = |family| ProgramIndex::new(family, units.iter().collect()).order;
         assert_eq!(order(Family::Pl72), [4, 3, 1, 0, 2]);
-        assert_eq!(order(Family::Pl7), [0, 1, 2, 3, 4]);
+        assert_eq!(order(Family::Step7), [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn the_parts_of_a_grafcet_section_follow_each_other() {
+        let units = units(&[
+            "MAST - P - CHART - PAGE 0",
+            "MAST - P - POST",
+            "MAST - Q",
+            "MAST - P - PRL",
+            "MAST - P - CHART - PAGE 1",
+            "FAST - MAIN",
+        ]);
+        let order = ProgramIndex::new(Family::Pl7, units.iter().collect()).order;
+        assert_eq!(order, [1, 3, 4, 0, 2, 5]);
     }
 }

@@ -281,8 +281,11 @@ impl Chart {
         }
         // The order of a hash table means nothing.
         pairs.sort_by_key(|it| (key(it.0), key(it.1)));
+        let mut joined = rustc_hash::FxHashSet::default();
         for (above, below) in pairs {
-            self.connect(above, below);
+            if self.connect(above, below) {
+                joined.insert((key(above), key(below)));
+            }
         }
         for at in 0..self.links.len() {
             let link = &self.links[at];
@@ -297,7 +300,8 @@ impl Chart {
             let mut is_joined = !pairs.is_empty();
             for pair in pairs {
                 is_joined &= match pair {
-                    (Some(from), Some(to)) => self.connect(from, to),
+                    (Some(from), Some(to)) if joined.contains(&(key(from), key(to))) => true,
+                    (Some(from), Some(to)) => self.connect(from, to) && joined.insert((key(from), key(to))),
                     _ => false,
                 };
             }
@@ -305,38 +309,28 @@ impl Chart {
         }
     }
 
-    /// Joins two elements, the first before the second; false if they do not go together.
+    /// Joins two elements that are not joined yet, the first before the second; false if they do not go together.
     fn connect(&mut self, from: Element, to: Element) -> bool {
-        let push = |list: &mut Vec<Node>, node: Node| {
-            if !list.contains(&node) {
-                list.push(node);
-            }
-            true
-        };
+        let kind = |it: u32| self.connectors.get(it as usize).map(|it| it.kind);
         match (from, to) {
             (Element::Step(step), Element::Transition(at)) => {
-                push(&mut self.transitions[at as usize].sources, Node::Step(step))
+                self.transitions[at as usize].sources.push(Node::Step(step));
             }
             (Element::Transition(at), Element::Step(step)) => {
-                push(&mut self.transitions[at as usize].targets, Node::Step(step))
+                self.transitions[at as usize].targets.push(Node::Step(step));
             }
-            (Element::Connector(it), Element::Transition(at)) => {
-                self.connectors[it as usize].kind == ConnectorKind::Origin
-                    && push(&mut self.transitions[at as usize].sources, Node::Connector(it))
+            (Element::Connector(it), Element::Transition(at)) if kind(it) == Some(ConnectorKind::Origin) => {
+                self.transitions[at as usize].sources.push(Node::Connector(it));
             }
-            (Element::Transition(at), Element::Connector(it)) => {
-                self.connectors[it as usize].kind == ConnectorKind::Destination
-                    && push(&mut self.transitions[at as usize].targets, Node::Connector(it))
+            (Element::Transition(at), Element::Connector(it)) if kind(it) == Some(ConnectorKind::Destination) => {
+                self.transitions[at as usize].targets.push(Node::Connector(it));
             }
-            (Element::Connector(it), Element::Step(step)) => {
-                let connector = &mut self.connectors[it as usize];
-                if !connector.steps.contains(&step) && connector.kind == ConnectorKind::Origin {
-                    connector.steps.push(step);
-                }
-                connector.kind == ConnectorKind::Origin
+            (Element::Connector(it), Element::Step(step)) if kind(it) == Some(ConnectorKind::Origin) => {
+                self.connectors[it as usize].steps.push(step);
             }
-            _ => false,
+            _ => return false,
         }
+        true
     }
 
     /// The name that a node leads to or comes from.

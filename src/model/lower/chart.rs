@@ -5,7 +5,7 @@
 //! pages may run, so that no value is known from one to the next.
 
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::builder::{Builder, index};
@@ -34,6 +34,7 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: 
         bits: FxHashMap::default(),
         codes: Vec::new(),
         named: Vec::new(),
+        named_at: FxHashMap::default(),
         associations: Vec::new(),
         receptivities: Vec::new(),
     };
@@ -142,6 +143,16 @@ struct Association<'t> {
     range: TextRange,
 }
 
+/// An action that steps name.
+struct Named {
+    /// In lower case.
+    name: SmolStr,
+    /// Index into [`Chart::actions`].
+    action: usize,
+    /// Who runs it how.
+    users: Vec<(u32, ActionKind)>,
+}
+
 struct Lowering<'t> {
     text: &'t str,
     /// Taken while the lowering of a language has it.
@@ -151,8 +162,10 @@ struct Lowering<'t> {
     bits: FxHashMap<u32, Option<ObjectId>>,
     /// The code of [`Chart::actions`], one each.
     codes: Vec<ast::ChartAction<'t>>,
-    /// Actions that steps name: their lower-case names, their index, and who runs them how.
-    named: Vec<(SmolStr, usize, Vec<(u32, ActionKind)>)>,
+    /// Actions that steps name.
+    named: Vec<Named>,
+    /// Index into `named` of each of [`Chart::actions`] that is one.
+    named_at: FxHashMap<usize, usize>,
     associations: Vec<Association<'t>>,
     /// The code of [`Chart::transitions`], one each.
     receptivities: Vec<ast::Transition<'t>>,
@@ -252,7 +265,9 @@ impl<'t> Lowering<'t> {
     fn action(&mut self, it: ast::ChartAction<'t>, step: Option<u32>) {
         let range = it.name().map_or(it.range(), SyntaxToken::text_range);
         if let Some(name) = it.name() {
-            self.named.push((name.text().to_lowercase().into(), self.chart.actions.len(), Vec::new()));
+            let action = self.chart.actions.len();
+            self.named_at.insert(action, self.named.len());
+            self.named.push(Named { name: name.text().to_lowercase().into(), action, users: Vec::new() });
         }
         self.chart.actions.push(Action {
             steps: step.into_iter().collect(),
@@ -279,9 +294,10 @@ impl<'t> Lowering<'t> {
         for (transition, tree) in self.chart.transitions.iter_mut().zip(&self.receptivities) {
             for end in tree.ends() {
                 let list = if end.is_source() { &mut transition.sources } else { &mut transition.targets };
+                let mut seen: FxHashSet<Node> = list.iter().cloned().collect();
                 for name in end.names().filter_map(|it| StepName::parse(&it.text())) {
                     let node = by_name.get(&name).map_or(Node::Named(name), |&at| Node::Step(at));
-                    if !list.contains(&node) {
+                    if seen.insert(node.clone()) {
                         list.push(node);
                     }
                 }
@@ -310,11 +326,11 @@ impl<'t> Lowering<'t> {
             let value;
             (pl7, value) = match language {
                 CodeLanguage::Il => {
-                    pl7.b.set_back_targets(pl7::back_targets(tree.syntax(), self.text));
+                    pl7.b.set_back_targets(self.back_targets(tree.syntax()));
                     il::sentences(pl7, sentences, true)
                 }
                 CodeLanguage::St => {
-                    pl7.b.set_back_targets(pl7::back_targets(tree.syntax(), self.text));
+                    pl7.b.set_back_targets(self.back_targets(tree.syntax()));
                     st::sentences(pl7, sentences)
                 }
                 CodeLanguage::Ladder => {
@@ -360,6 +376,11 @@ impl<'t> Lowering<'t> {
         path
     }
 
+    fn back_targets(&self, code: SyntaxNode<'_>) -> FxHashSet<SmolStr> {
+        let text = self.text.get(std::ops::Range::<usize>::from(code.text_range())).unwrap_or_default();
+        pl7::back_targets(code, text)
+    }
+
     /// Starts a piece of code that runs under a condition.
     fn begin(&mut self, path: ExprId) -> Option<Pl7> {
         let mut pl7 = self.pl7.take()?;
@@ -372,17 +393,17 @@ impl<'t> Lowering<'t> {
     fn name_actions(&mut self) {
         let mut by_name: FxHashMap<SmolStr, usize> = FxHashMap::default();
         for (at, it) in self.named.iter().enumerate() {
-            by_name.entry(it.0.clone()).or_insert(at);
+            by_name.entry(it.name.clone()).or_insert(at);
         }
         let named = &mut self.named;
         self.associations.retain(|it| {
             let name = SmolStr::from(it.target.text().to_lowercase());
             let Some(&at) = by_name.get(&name) else { return true };
-            named[at].2.push((it.step, it.kind.unwrap_or(ActionKind::Timed)));
+            named[at].users.push((it.step, it.kind.unwrap_or(ActionKind::Timed)));
             false
         });
-        for (_, at, users) in &self.named {
-            let Some(action) = self.chart.actions.get_mut(*at) else { continue };
+        for Named { action, users, .. } in &self.named {
+            let Some(action) = self.chart.actions.get_mut(*action) else { continue };
             action.steps = users.iter().map(|it| it.0).collect();
             action.steps.dedup();
             action.kind = users.first().map(|it| it.1).filter(|kind| users.iter().all(|it| it.1 == *kind));
@@ -395,8 +416,8 @@ impl<'t> Lowering<'t> {
             if !wanted(kind) {
                 continue;
             }
-            let users: Vec<(u32, ActionKind)> = match self.named.iter().find(|it| it.1 == at) {
-                Some(named) => named.2.clone(),
+            let users: Vec<(u32, ActionKind)> = match self.named_at.get(&at).and_then(|it| self.named.get(*it)) {
+                Some(named) => named.users.clone(),
                 // What the text does not say runs as long as the step is active.
                 None => steps.into_iter().map(|it| (it, kind.unwrap_or(ActionKind::Continuous))).collect(),
             };
@@ -414,7 +435,7 @@ impl<'t> Lowering<'t> {
             let code = self.codes[at];
             let language = code.language().unwrap_or_else(|| language_of(code.rungs().next(), code.sentences().next()));
             let first = index(pl7.b.model.anchors.len());
-            pl7.b.set_back_targets(pl7::back_targets(code.syntax(), self.text));
+            pl7.b.set_back_targets(self.back_targets(code.syntax()));
             (pl7, _) = match language {
                 CodeLanguage::Il => il::sentences(pl7, code.sentences(), false),
                 CodeLanguage::St => st::sentences(pl7, code.sentences()),
@@ -433,6 +454,7 @@ impl<'t> Lowering<'t> {
     /// Bits that steps name where an action could stand: a bit with `N` is 1 while one of its steps is active.
     fn bit_actions(&mut self) {
         let mut groups: Vec<(ObjectId, Vec<(Association<'t>, ExprId)>)> = Vec::new();
+        let mut group_of: FxHashMap<ObjectId, usize> = FxHashMap::default();
         for it in std::mem::take(&mut self.associations) {
             let step = self.bit(it.step);
             let Some(pl7) = &mut self.pl7 else { return };
@@ -453,10 +475,11 @@ impl<'t> Lowering<'t> {
                 ActionKind::Stored | ActionKind::Reset => peek(pl7, step),
                 kind => guard(pl7, kind, step),
             };
-            match groups.iter_mut().find(|group| group.0 == object) {
-                Some(group) => group.1.push((it, when)),
-                None => groups.push((object, vec![(it, when)])),
-            }
+            let at = *group_of.entry(object).or_insert_with(|| {
+                groups.push((object, Vec::new()));
+                groups.len() - 1
+            });
+            groups[at].1.push((it, when));
         }
         let Some(pl7) = &mut self.pl7 else { return };
         pl7.b.begin_part();
