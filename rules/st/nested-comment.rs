@@ -3,14 +3,13 @@
 use rowan::{TextRange, TextSize};
 
 use crate::lint::{Sink, UnitCx};
-use crate::syntax::{Language, SyntaxKind};
+use crate::syntax::SyntaxKind;
 
 /// Length of `(*` and of `*)`.
 const MARK: usize = 2;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let is_pl7 = matches!(cx.model.language, Language::Pl7Il | Language::Pl7St | Language::Pl7Ld);
-    if !is_pl7 || !is_suspicious(cx.text) {
+    if !is_suspicious(cx.text) {
         return;
     }
     let mark = TextSize::of("(*");

@@ -50,6 +50,9 @@ pub const TRANSITIONS: Limit = Limit::new(1024, "PL7:4190");
 pub const AND_CONVERGENCES: Limit = Limit::new(64, "PL7:4286");
 /// Branches of one divergence or convergence.
 pub const BRANCHES: Limit = Limit::new(11, "PL7:4191-4196");
+/// Lines and columns of a page of a chart.
+pub const PAGE_LINES: Limit = Limit::new(14, "PL7:4322");
+pub const PAGE_COLUMNS: Limit = Limit::new(11, "PL7:4322");
 /// Columns of a rung.
 pub const LADDER_COLUMNS: Limit = Limit::new(11, "PL7:2660");
 /// Columns of a comparison block on one line, and of an operation block.

@@ -44,6 +44,9 @@ pub(super) struct Builder {
     /// Labels that some jump further down goes back to.
     back_targets: FxHashSet<SmolStr>,
     label_index: FxHashMap<SmolStr, u32>,
+    /// Number of the piece of code with labels of its own, and its first jump.
+    part: u32,
+    first_jump: usize,
     network: u32,
     loops: Vec<u32>,
 }
@@ -79,10 +82,14 @@ impl Builder {
             calls: Vec::new(),
             loops: Vec::new(),
             declarations: Vec::new(),
+            symbols: Vec::new(),
+            remarks: Vec::new(),
             indexes: Vec::new(),
             constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),
+            hollows: Vec::new(),
+            computes: None,
             anchors: vec![heading],
             instance_of: None,
             instructions: 0,
@@ -90,6 +97,7 @@ impl Builder {
             writes_indirectly: false,
             has_gaps: false,
             mixes_floats: false,
+            chart: None,
         };
         Self {
             model,
@@ -106,6 +114,8 @@ impl Builder {
             pending: FxHashMap::default(),
             back_targets: FxHashSet::default(),
             label_index: FxHashMap::default(),
+            part: 0,
+            first_jump: 0,
             network: 0,
             loops: Vec::new(),
         }
@@ -148,6 +158,13 @@ impl Builder {
         id
     }
 
+    /// Notes an operation that can overflow.
+    pub(super) fn computes(&mut self, range: TextRange) {
+        if self.model.computes.is_none() {
+            self.model.computes = Some(self.anchor(range));
+        }
+    }
+
     /// A place that facts can name.
     pub(super) fn anchor(&mut self, range: TextRange) -> u32 {
         self.model.anchors.push(range);
@@ -157,7 +174,16 @@ impl Builder {
     fn access(&mut self, object: ObjectId, mode: Mode, range: TextRange, version: u32, exposed: bool) -> u32 {
         let anchor = self.anchor(range);
         let statement = index(self.model.statements.len());
-        self.model.accesses.push(Access { object, mode, statement, anchor, version, exposed, parameter: None });
+        self.model.accesses.push(Access {
+            object,
+            mode,
+            statement,
+            anchor,
+            path: self.path,
+            version,
+            exposed,
+            parameter: None,
+        });
         index(self.model.accesses.len() - 1)
     }
 
@@ -173,6 +199,18 @@ impl Builder {
         let (version, exposed) = self.version(object);
         let mode = if rising { Mode::Rising } else { Mode::Falling };
         self.access(object, mode, range, version, exposed);
+        self.model.exprs.edge(object, version, rising)
+    }
+
+    /// The value of an object as the controller itself looks at it: no access of the program.
+    pub(super) fn peek(&mut self, object: ObjectId) -> ExprId {
+        let (version, _) = self.version(object);
+        self.model.exprs.read(object, version)
+    }
+
+    /// The same of an edge.
+    pub(super) fn peek_edge(&mut self, object: ObjectId, rising: bool) -> ExprId {
+        let (version, _) = self.version(object);
         self.model.exprs.edge(object, version, rising)
     }
 
@@ -320,6 +358,25 @@ impl Builder {
 
     // Control flow.
 
+    /// A piece of code begins that is programmed by itself, as an action is: its labels are its own, and other code of the
+    /// program may have run before it.
+    pub(super) fn begin_part(&mut self) {
+        self.resolve_jumps();
+        self.part += 1;
+        self.label_index.clear();
+        self.pending.clear();
+        self.back_targets.clear();
+        self.loops.clear();
+        self.wipe_by_call();
+    }
+
+    fn resolve_jumps(&mut self) {
+        for jump in self.model.jumps.iter_mut().skip(self.first_jump) {
+            jump.target = jump.target.or_else(|| self.label_index.get(&jump.label).copied());
+        }
+        self.first_jump = self.model.jumps.len();
+    }
+
     /// Tells the labels that some jump goes back to, which a lowering finds before it walks the code: what is known on
     /// the way down does not hold there.
     pub(super) fn set_back_targets(&mut self, labels: FxHashSet<SmolStr>) {
@@ -357,7 +414,9 @@ impl Builder {
     pub(super) fn jump(&mut self, label: SmolStr, text: SmolStr, at: TextRange, when: ExprId, range: TextRange) {
         let target = self.label_index.get(&label).copied();
         let statement = index(self.model.statements.len());
-        self.model.jumps.push(Jump { label: label.clone(), text, range: at, statement, when, target });
+        let anchor = self.anchor(at);
+        let part = self.part;
+        self.model.jumps.push(Jump { label: label.clone(), text, range: at, anchor, statement, when, target, part });
         let jump = index(self.model.jumps.len() - 1);
         self.statement(StatementKind::Jump(jump), range);
         let taken = self.model.exprs.and(self.path, when);
@@ -400,7 +459,7 @@ impl Builder {
     pub(super) fn label(&mut self, name: SmolStr, text: SmolStr, range: TextRange) {
         let label = index(self.model.labels.len());
         let statement = index(self.model.statements.len());
-        self.model.labels.push(Label { name: name.clone(), text, range, statement });
+        self.model.labels.push(Label { name: name.clone(), text, range, statement, part: self.part });
         self.label_index.entry(name.clone()).or_insert(label);
         let arriving = self.pending.remove(&name).unwrap_or(Exprs::FALSE);
         self.path = self.model.exprs.or(self.path, arriving);
@@ -453,10 +512,7 @@ impl Builder {
     }
 
     pub(super) fn finish(mut self) -> UnitModel {
-        let index = &self.label_index;
-        for jump in &mut self.model.jumps {
-            jump.target = jump.target.or_else(|| index.get(&jump.label).copied());
-        }
+        self.resolve_jumps();
         self.model
     }
 }

@@ -8,6 +8,7 @@ use rowan::TextRange;
 use smol_str::SmolStr;
 
 use super::builder::index;
+use super::chart;
 use super::pl7::{self, Kind, Pl7};
 use crate::model::UnitModel;
 use crate::model::entity::{Entity, Part};
@@ -24,8 +25,21 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitMod
     // A receptivity is a list of tests alone (PL7:4713-4749).
     let tests_only = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
         || is_bare_receptivity(root);
+    let mut pl7 = Pl7::new(root, entity, Language::Pl7Il);
+    chart::enter_piece(&mut pl7);
+    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    let all = ast::Root::cast(root).into_iter().flat_map(ast::Root::sentences);
+    sentences(pl7, all, tests_only).0.b.finish()
+}
+
+/// Lowers sentences, and gives the lowering back with the result of the last one.
+pub(super) fn sentences<'t>(
+    pl7: Pl7,
+    sentences: impl IntoIterator<Item = ast::Sentence<'t>>,
+    tests_only: bool,
+) -> (Pl7, Option<ExprId>) {
     let mut lowering = Lowering {
-        pl7: Pl7::new(root, entity, Language::Pl7Il),
+        pl7,
         tests_only,
         result: None,
         test: None,
@@ -37,14 +51,11 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitMod
         block: None,
         forgotten: false,
     };
-    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
-    if let Some(root) = ast::Root::cast(root) {
-        for sentence in root.sentences() {
-            lowering.sentence(&sentence);
-        }
+    for sentence in sentences {
+        lowering.sentence(&sentence);
     }
     lowering.close_block(None);
-    lowering.pl7.b.finish()
+    (lowering.pl7, lowering.result)
 }
 
 /// One sentence of tests without a heading: what documents print of a receptivity.

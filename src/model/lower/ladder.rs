@@ -22,12 +22,28 @@ use crate::syntax::{AstNode as _, Language, SyntaxNode};
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     let is_transition = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
         || is_bare_receptivity(root);
-    let mut lowering = Lowering { pl7: Pl7::new(root, entity, Language::Pl7Ld), is_transition };
-    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
-    for rung in ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs) {
+    let mut pl7 = Pl7::new(root, entity, Language::Pl7Ld);
+    super::chart::enter_piece(&mut pl7);
+    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    let code = ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs);
+    let (mut pl7, receptivity) = rungs(pl7, code, is_transition);
+    if let Some(condition) = receptivity {
+        pl7.b.statement(StatementKind::Branch { condition }, root.text_range());
+    }
+    pl7.b.finish()
+}
+
+/// The rungs of a section, an action or a transition. Gives what the `(#)` of a transition takes.
+pub(super) fn rungs<'t>(
+    pl7: Pl7,
+    rungs: impl IntoIterator<Item = ast::Rung<'t>>,
+    is_transition: bool,
+) -> (Pl7, Option<ExprId>) {
+    let mut lowering = Lowering { pl7, is_transition, receptivity: None };
+    for rung in rungs {
         lowering.rung(rung);
     }
-    lowering.pl7.b.finish()
+    (lowering.pl7, lowering.receptivity)
 }
 
 /// One rung with a `(#)` and nothing that says what it belongs to: what documents print of a receptivity.
@@ -43,6 +59,8 @@ fn is_bare_receptivity(root: SyntaxNode<'_>) -> bool {
 struct Lowering {
     pl7: Pl7,
     is_transition: bool,
+    /// What the hash coils have taken.
+    receptivity: Option<ExprId>,
 }
 
 /// A rung while it is executed. Its connected networks share no wire but the rail.
@@ -298,7 +316,10 @@ impl Lowering {
         let element = it.element?;
         match element {
             Element::HashCoil => {
-                self.pl7.b.statement(StatementKind::Branch { condition: when }, range);
+                self.receptivity = Some(match self.receptivity {
+                    Some(other) => self.pl7.b.exprs().or(other, when),
+                    None => when,
+                });
                 return None;
             }
             Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil => {}

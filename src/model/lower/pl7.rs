@@ -43,8 +43,8 @@ pub(super) struct Pl7 {
 }
 
 /// The heading line, else the first sentence's first token.
-fn heading(root: SyntaxNode<'_>) -> TextRange {
-    let root = ast::Root::cast(root);
+fn heading(node: SyntaxNode<'_>) -> TextRange {
+    let root = ast::Root::cast(node);
     let heading = root.as_ref().and_then(|it| it.headings().next()).map(|it| it.syntax().text_range());
     let rung = || Some(root.as_ref()?.rungs().next()?.keyword()?.text_range());
     let first = || {
@@ -52,7 +52,8 @@ fn heading(root: SyntaxNode<'_>) -> TextRange {
         let mut tokens = sentence.syntax().descendant_tokens();
         Some(tokens.find(|it| !it.kind().is_trivia())?.text_range())
     };
-    heading.or_else(first).or_else(rung).unwrap_or_default()
+    let token = || node.descendant_tokens().find(|it| !it.kind().is_trivia()).map(|it| it.text_range());
+    heading.or_else(first).or_else(rung).or_else(token).unwrap_or_default()
 }
 
 impl Pl7 {
@@ -60,7 +61,7 @@ impl Pl7 {
         Self { b: Builder::new(entity, language, heading(root)) }
     }
 
-    fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
+    pub(super) fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
         self.b.oddity(OddityKind::Address(error), range, text);
         self.b.object(Object {
             text: text.into(),
@@ -280,6 +281,9 @@ impl Pl7 {
             _ => Kind::Unknown,
         };
         let Some(op) = it.op() else { return self.optional(None) };
+        if matches!(op, BinOp::Add | BinOp::Sub | BinOp::Mul | BinOp::Div) {
+            self.b.computes(it.syntax().text_range());
+        }
         let exprs = self.b.exprs();
         let arithmetic = |operator| (operator, number);
         let (operator, kind) = match op {

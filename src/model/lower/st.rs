@@ -4,34 +4,43 @@ use crate::syntax::AstNode as _;
 use rowan::TextRange;
 
 use super::builder::index;
+use super::chart;
 use super::pl7::{self, Pl7};
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs};
 use crate::model::object::Rights;
-use crate::model::unit::{DeadCause, Leave, Loop, LoopKind, StatementKind};
+use crate::model::unit::{DeadCause, Hollow, HollowKind, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
-use crate::syntax::{Language, SyntaxNode};
+use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
-    let mut lowering = Lowering { pl7: Pl7::new(root, entity, Language::Pl7St) };
-    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
-    if let Some(root) = ast::Root::cast(root) {
-        for sentence in root.sentences() {
-            lowering.pl7.b.next_network();
-            for label in sentence.labels() {
-                lowering.pl7.label(&label);
-            }
-            for statement in sentence.statements() {
-                lowering.statement(&statement);
-            }
+    let mut pl7 = Pl7::new(root, entity, Language::Pl7St);
+    chart::enter_piece(&mut pl7);
+    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    let all = ast::Root::cast(root).into_iter().flat_map(ast::Root::sentences);
+    sentences(pl7, all).0.b.finish()
+}
+
+/// Lowers sentences, and gives the lowering back with the value of the last one that is an expression.
+pub(super) fn sentences<'t>(pl7: Pl7, sentences: impl IntoIterator<Item = ast::Sentence<'t>>) -> (Pl7, Option<ExprId>) {
+    let mut lowering = Lowering { pl7, value: None };
+    for sentence in sentences {
+        lowering.pl7.b.next_network();
+        for label in sentence.labels() {
+            lowering.pl7.label(&label);
+        }
+        for statement in sentence.statements() {
+            lowering.statement(&statement);
         }
     }
-    lowering.pl7.b.finish()
+    (lowering.pl7, lowering.value)
 }
 
 struct Lowering {
     pl7: Pl7,
+    /// Of an expression that stands alone, as a receptivity does.
+    value: Option<ExprId>,
 }
 
 impl Lowering {
@@ -70,7 +79,7 @@ impl Lowering {
             Stmt::Empty(_) => {}
             Stmt::Expr(it) => {
                 if let Some(expr) = it.expr() {
-                    self.pl7.expr(&expr);
+                    self.value = Some(self.pl7.expr(&expr).0);
                 }
             }
         }
@@ -97,6 +106,7 @@ impl Lowering {
             let cut = (open != Exprs::FALSE).then_some((DeadCause::FalseCondition, at));
             let taken = self.pl7.b.exprs().and(open, condition);
             self.pl7.b.enter(taken, cut);
+            self.hollow(HollowKind::Branch, arm.syntax(), arm.body());
             self.list(arm.body());
             ends.push(self.pl7.b.path());
             let not = self.pl7.b.exprs().not(condition);
@@ -104,6 +114,7 @@ impl Lowering {
             self.pl7.b.enter(open, cut);
         }
         if let Some(arm) = it.else_arm() {
+            self.hollow(HollowKind::Branch, arm.syntax(), arm.body());
             self.list(arm.body());
             open = self.pl7.b.path();
         }
@@ -188,9 +199,23 @@ impl Lowering {
         let runs = self.pl7.b.exprs().opaque();
         let inside = self.pl7.b.exprs().and(before, runs);
         self.pl7.b.enter(inside, None);
+        self.hollow(HollowKind::Loop, it.syntax(), it.body());
         self.list(it.body());
         self.pl7.b.close_loop();
         self.pl7.b.enter(before, None);
+    }
+
+    /// Notes a body without a statement that does anything.
+    fn hollow(&mut self, kind: HollowKind, node: SyntaxNode<'_>, body: Option<ast::StmtList<'_>>) {
+        let is_remark = |it: SyntaxToken<'_>| it.kind() == SyntaxKind::Comment;
+        let mut statements = body.into_iter().flat_map(|it| it.statements());
+        let is_odd = |it: SyntaxElement<'_>| matches!(it.kind(), SyntaxKind::Error | SyntaxKind::Elision);
+        if statements.all(|it| matches!(it, Stmt::Empty(_))) && !node.children_with_tokens().any(is_odd) {
+            let range = keyword(node);
+            if !node.descendant_tokens().any(is_remark) {
+                self.pl7.b.model.hollows.push(Hollow { kind, range });
+            }
+        }
     }
 }
 

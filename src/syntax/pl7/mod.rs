@@ -1,10 +1,11 @@
-//! PL7 instruction list, structured text and ladder, in the exchange form and as pasted in documents.
+//! PL7 instruction list, structured text, ladder and Grafcet, in the exchange form and as pasted in documents.
 //!
 //! One lexer, one expression grammar and one frame of sentences serve the first two. The tree is
 //! `Root > Sentence > (LabelDef | IlInstr | statement)*`, of ladder `Root > Rung > (LabelDef | RungRow > Cell)*`; [`ast`]
 //! gives it types.
 
 pub mod ast;
+pub mod chart;
 mod expr;
 pub mod functions;
 mod grammar;
@@ -35,4 +36,17 @@ pub fn parse_ld(text: &str) -> Parse {
 /// Parses one unit of structured text. Total and linear for every text.
 pub fn parse_st(text: &str) -> Parse {
     grammar::parse(text, Dialect::St)
+}
+
+/// Whether a word means something in the language, in any case: a keyword, an instruction, a function, a subroutine.
+pub fn is_reserved(text: &str) -> bool {
+    word::Keyword::of(text).is_some()
+        || instructions::lookup(text).is_some()
+        || functions::lookup(text).is_some()
+        || word::subroutine(text).is_some()
+}
+
+/// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
+pub fn parse_chart(text: &str) -> Parse {
+    grammar::parse_chart(text)
 }
