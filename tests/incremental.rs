@@ -227,3 +227,26 @@ fn what_an_edit_leaves_is_what_a_fresh_run_finds() {
         assert_eq!(fresh.project().files(&fresh).len(), 1);
     }
 }
+
+const VARIABLES: &str = "[DATA_UNIT]\nVAR_GLOBAL\nPump AT %Q2.0 : EBOOL (*left*);\nEND_VAR\n[EOF]\n";
+const USERS: &str = "ST : MAST - MAIN\n! Pump := %I1.0;\n! (* first *) SR1;\nST : MAST - SR1\n! %Q2.0 := %I1.1;\n";
+
+#[test]
+fn symbols_cross_files_without_their_places() {
+    let mut setup = setup(&[("plant.scy", VARIABLES, Dialect::Auto), ("plant.st", USERS, Dialect::Auto)]);
+    let clash = "W001 `Pump` (`%Q2.0`) is assigned in more than one place".to_owned();
+    assert!(setup.check().contains(&clash));
+    for (file, from, to) in [(1, "(* first *)", "(* the first *)"), (0, "(*left*)", "\n(*right*)")] {
+        setup.edit(file, from, to);
+        assert!(setup.check().contains(&clash));
+        let executed = setup.executed();
+        for query in ["program_findings", "symbol_table", "program_units", "programs"] {
+            assert_eq!(Setup::count(&executed, query), 0, "{query}: {executed:?}");
+        }
+    }
+    setup.edit(0, "%Q2.0", "%Q2.7");
+    assert!(!setup.check().contains(&clash));
+    let executed = setup.executed();
+    assert_eq!(Setup::count(&executed, "program_findings"), 1, "{executed:?}");
+    assert_eq!(Setup::count(&executed, "analysis"), 1, "the code is not looked at: {executed:?}");
+}

@@ -1,6 +1,7 @@
 //! Rule pages as tests: their examples are executed, their sections are complete.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use plclint::db::{self, Input};
 use plclint::lint::settings::{Folders, Overrides, Settings};
@@ -15,6 +16,8 @@ struct Example {
     bad: bool,
     /// ```` ```awl,bad,CPU 314 ````: checked for that controller.
     controller: Option<String>,
+    /// ```` ```toml,example ```` before it: the `plclint.toml` that it is checked with.
+    config: String,
     text: String,
 }
 
@@ -22,6 +25,8 @@ fn examples(rule: &Rule) -> Vec<Example> {
     let mut examples = Vec::new();
     let mut open: Option<Example> = None;
     let mut skip = false;
+    let mut config: Option<String> = None;
+    let mut next_config = String::new();
     for (line, text) in rule.page.lines().enumerate() {
         if let Some(example) = &mut open {
             if text.trim_end() == "```" {
@@ -29,10 +34,20 @@ fn examples(rule: &Rule) -> Vec<Example> {
             } else {
                 writeln!(example.text, "{text}").expect("a string");
             }
+        } else if let Some(open) = &mut config {
+            if text.trim_end() == "```" {
+                next_config = config.take().unwrap_or_default();
+            } else {
+                writeln!(open, "{text}").expect("a string");
+            }
         } else if skip {
             skip = text.trim_end() != "```";
         } else if let Some(info) = text.strip_prefix("```") {
             let (language, verdict) = info.split_once(',').unwrap_or((info, ""));
+            if info == "toml,example" {
+                config = Some(String::new());
+                continue;
+            }
             if language == "toml" {
                 // A setting, not a program: its lines hold no fence.
                 skip = true;
@@ -53,7 +68,15 @@ fn examples(rule: &Rule) -> Vec<Example> {
                 other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
             };
             assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
-            open = Some(Example { line: line + 1, dialect, bad: verdict == "bad", controller, text: String::new() });
+            let config = std::mem::take(&mut next_config);
+            open = Some(Example {
+                line: line + 1,
+                dialect,
+                bad: verdict == "bad",
+                controller,
+                config,
+                text: String::new(),
+            });
         }
     }
     assert!(open.is_none(), "{}: an example is not closed", rule.name);
@@ -63,7 +86,8 @@ fn examples(rule: &Rule) -> Vec<Example> {
 fn found(example: &Example) -> Vec<(&'static str, String)> {
     let controller = example.controller.clone();
     let overrides = Overrides { select: Some(vec!["all".to_owned()]), controller, ..Overrides::default() };
-    let settings = Settings::without_file(Folders::default(), overrides).expect("`all` is a selection");
+    let name = Path::new("plclint.toml");
+    let settings = Settings::parse(&example.config, name, Folders::default(), overrides).expect("settings");
     let extension = if example.dialect == Dialect::Step7 { "awl" } else { "txt" };
     let input = Input::from_text(&format!("example.{extension}"), &example.text, example.dialect);
     let outcome = db::check(vec![input], settings);
@@ -107,8 +131,8 @@ fn every_dialect_has_its_examples() {
                 "s7" => &[Dialect::Step7],
                 "il" => &[Dialect::Pl7Il],
                 "st" => &[Dialect::Pl7St],
-                "g7" => &[Dialect::Pl7Gr7],
                 "ld" => &[Dialect::Pl7Ld],
+                "g7" => &[Dialect::Pl7Gr7],
                 // Read in a later version.
                 "s5" | "pl72" => &[],
                 other => panic!("{}: dialect `{other}`", rule.name),

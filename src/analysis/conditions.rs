@@ -83,6 +83,26 @@ fn are_free(exprs: &Exprs, conjuncts: &[ExprId]) -> bool {
     terms.windows(2).all(|it| it[0] != it[1])
 }
 
+/// Whether the given conditions can hold at once, while of none of the others all parts do.
+pub fn without(exprs: &Exprs, given: &[ExprId], others: &[[ExprId; 2]]) -> Verdict {
+    if given.contains(&Exprs::FALSE) || others.contains(&[Exprs::TRUE; 2]) {
+        return Verdict::Never;
+    }
+    let all: Vec<ExprId> = given.iter().chain(others.iter().flatten()).copied().collect();
+    let Some(table) = Table::new(exprs, &all) else { return Verdict::NotDecided };
+    let mut known = FxHashMap::default();
+    let mut rows = table.lawful(exprs);
+    for &it in given {
+        let value = table.evaluate(exprs, it, &mut known);
+        rows.iter_mut().zip(value).for_each(|(row, value)| *row &= value);
+    }
+    for &[a, b] in others {
+        let (a, b) = (table.evaluate(exprs, a, &mut known), table.evaluate(exprs, b, &mut known));
+        rows.iter_mut().zip(a).zip(b).for_each(|((row, a), b)| *row &= !(a & b));
+    }
+    if rows.iter().any(|&it| it != 0) { Verdict::Possible } else { Verdict::Never }
+}
+
 /// Whether two conditions surely never hold at once.
 pub fn exclusive(exprs: &Exprs, a: ExprId, b: ExprId) -> bool {
     together(exprs, &[a, b]) == Verdict::Never
@@ -378,6 +398,19 @@ mod tests {
         let left = exprs.and(a, not_b);
         let right = exprs.or(b, not_a);
         assert!(exclusive(&exprs, left, right));
+    }
+
+    #[test]
+    fn conditions_leave_nothing_out_when_they_cover_all() {
+        let mut exprs = Exprs::default();
+        let (a, b) = (bit(&mut exprs, 0), bit(&mut exprs, 1));
+        let not_a = exprs.not(a);
+        let (both, other) = (exprs.and(a, b), exprs.and(not_a, b));
+        let all = Exprs::TRUE;
+        assert_eq!(without(&exprs, &[all], &[[a, all], [not_a, all]]), Verdict::Never);
+        assert_eq!(without(&exprs, &[all], &[[both, all], [other, all]]), Verdict::Possible);
+        assert_eq!(without(&exprs, &[b], &[[both, all], [other, all]]), Verdict::Never);
+        assert_eq!(without(&exprs, &[b], &[[a, b], [not_a, a]]), Verdict::Possible);
     }
 
     #[test]

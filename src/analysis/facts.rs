@@ -8,7 +8,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::chart::ChartFacts;
-use super::conditions;
+use super::{conditions, gaps};
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
 use crate::model::entity::{BlockName, Entity};
@@ -31,6 +31,12 @@ pub struct Use {
     pub group: u32,
     /// Whether control may pass the place by.
     pub conditional: bool,
+    /// Number of the condition under which control reaches the place: equal numbers in a unit are equal conditions.
+    pub path: u32,
+    /// For an edge test or an input of a block: place of the jump that can skip it.
+    pub skipped_by: Option<u32>,
+    /// For an edge test: a run of the unit may make it without the unit's own write of the object.
+    pub stale: bool,
     /// For writes: the constant that is written, when it is one.
     pub constant: Option<i64>,
     /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever. For other writes: the object
@@ -50,15 +56,17 @@ pub struct FactObject {
     pub object: Object,
     /// The value is computed with: arithmetic or an order comparison reads it, or an arithmetic result is stored in it.
     pub number: bool,
+    /// The unit writes it, or drives it, and some runs pass that by: number of the condition at the first such place.
+    pub missed: Option<u32>,
     /// Of what makes it one object with those of other units, see [`Self::is_same`]. 0 for an object of the unit alone.
     pub hash: u64,
 }
 
 impl FactObject {
-    fn new(object: &Object, number: bool) -> Self {
+    pub(super) fn new(object: &Object, number: bool, missed: Option<u32>) -> Self {
         let key = (&object.footprint, object.ty, object.indexed);
         let hash = if is_shared(object) { FxBuildHasher.hash_one(key) } else { 0 };
-        Self { object: object.clone(), number, hash }
+        Self { object: object.clone(), number, missed, hash }
     }
 
     /// Whether two units name one object, whatever its spelling.
@@ -93,6 +101,17 @@ pub struct FactDeclaration {
     pub ty: SmolStr,
 }
 
+/// A symbol that the unit declares for the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FactSymbol {
+    /// As written.
+    pub name: SmolStr,
+    /// `None` for an instance of a DFB.
+    pub object: Option<Object>,
+    /// Place of the name.
+    pub anchor: u32,
+}
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnitFacts {
     pub entity: Entity,
@@ -110,7 +129,10 @@ pub struct UnitFacts {
     pub instance_of: Option<BlockName>,
     /// Parameters and variables that the block declares.
     pub declared: Vec<FactDeclaration>,
+    pub symbols: Vec<FactSymbol>,
     pub instructions: u32,
+    /// Anchor of the first operation of PL7 that can overflow.
+    pub computes: Option<u32>,
     /// Some place computed at run time is read (or written): any object may be.
     pub reads_indirectly: bool,
     pub writes_indirectly: bool,
@@ -159,6 +181,8 @@ impl UnitFacts {
             }
         }
         let groups = groups(model, &given);
+        let writes = gaps::writes(model);
+        let (skips, exits) = (gaps::skips(model), gaps::exits(model));
         let uses = model
             .accesses
             .iter()
@@ -187,6 +211,12 @@ impl UnitFacts {
                     conditional: statement.is_some_and(|it| it.path != Exprs::TRUE)
                         || by_call
                         || when.is_some_and(|it| it != Exprs::TRUE),
+                    path: access.path.0,
+                    skipped_by: gaps::skip(&skips, access)
+                        .filter(|_| access.mode.is_edge() || matches!(access.mode, Mode::EdgeMemory | Mode::Drive(_)))
+                        .and_then(|it| Some(model.jumps.get(it as usize)?.anchor)),
+                    stale: access.mode.is_edge()
+                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(&model.exprs, access.path, &[])),
                     constant,
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
@@ -195,11 +225,15 @@ impl UnitFacts {
                 }
             })
             .collect();
-        let objects = model.objects.iter().zip(numbers);
+        let missed = |at: u32| {
+            let it = writes.get(&at).filter(|it| it.leave_out(&model.exprs, Exprs::TRUE, &exits))?;
+            Some(it.first().0)
+        };
+        let objects = (0..).zip(&model.objects).zip(numbers);
         Self {
             entity: model.entity.clone(),
             language: model.language,
-            objects: objects.map(|(object, number)| FactObject::new(object, number)).collect(),
+            objects: objects.map(|((at, object), number)| FactObject::new(object, number, missed(at))).collect(),
             uses,
             calls: calls(model),
             exclusive_calls: exclusive_calls(model),
@@ -210,7 +244,13 @@ impl UnitFacts {
                 .iter()
                 .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
                 .collect(),
+            symbols: model
+                .symbols
+                .iter()
+                .map(|it| FactSymbol { name: it.name.clone(), object: it.object.clone(), anchor: it.anchor })
+                .collect(),
             instructions: model.instructions,
+            computes: model.computes,
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,

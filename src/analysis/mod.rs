@@ -3,12 +3,16 @@
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
 pub mod calls;
+pub mod channels;
 pub mod chart;
 pub mod conditions;
 pub mod counts;
 pub mod drives;
+pub mod edges;
 pub mod facts;
+pub mod gaps;
 pub mod program;
+pub mod symbols;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -11,6 +11,7 @@ use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::{Callee, Mode, Section};
+use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -19,10 +20,42 @@ pub enum Context {
     Cyclic,
     Fast,
     Event(u16),
+    /// A task of a PL7 project of which only the number is known.
+    Task(u16),
     /// OB 100 to 102: once, before the first scan.
     Startup,
     /// Any other OB, by number.
     Interrupt(u32),
+}
+
+impl Context {
+    /// Whether code of one context never interrupts code of the other. Events but EVT0 have one priority (PL7:2113-2117);
+    /// so have the OBs of one kind, by the vendor's general documentation.
+    fn is_level_with(self, other: Self) -> bool {
+        let kind = |ob: u32| match ob {
+            10..=17 => 10,
+            80..=89 => 80,
+            other => other,
+        };
+        match (self, other) {
+            (Self::Event(a), Self::Event(b)) => a == b || (a != 0 && b != 0),
+            (Self::Interrupt(a), Self::Interrupt(b)) => kind(a) == kind(b),
+            (a, b) => a == b,
+        }
+    }
+
+    /// The task or block that it stands for.
+    pub fn name(self, family: Family) -> String {
+        match (self, family) {
+            (Self::Cyclic, Family::Step7) => "OB1".to_owned(),
+            (Self::Cyclic, _) => "MAST".to_owned(),
+            (Self::Fast, _) => "FAST".to_owned(),
+            (Self::Event(number), _) => format!("EVT{number}"),
+            (Self::Task(number), _) => format!("task {number}"),
+            (Self::Startup, _) => "the start-up blocks".to_owned(),
+            (Self::Interrupt(number), _) => format!("OB{number}"),
+        }
+    }
 }
 
 /// One use of an object, with the unit that it stands in.
@@ -104,6 +137,10 @@ pub struct ProgramIndex<'a> {
     pub callers: Vec<Vec<u32>>,
     /// Contexts that run each unit, sorted.
     pub contexts: Vec<Vec<Context>>,
+    /// Whether the system runs each unit, or code that it runs calls it. The contexts of other units are a guess.
+    pub reached: Vec<bool>,
+    /// Whether a unit surely runs in each scan of some task: its entry point, and what it calls without a condition.
+    pub sure: Vec<bool>,
     /// Rank of each unit in the order of execution.
     pub order: Vec<u32>,
     /// Whether the program has a cyclic entry point and every block that it calls: only then does the absence of a
@@ -132,7 +169,8 @@ impl<'a> ProgramIndex<'a> {
                 calls.push(GlobalCall { unit: as_index(unit), index: as_index(index), it, target });
             }
         }
-        let contexts = contexts(&units, &calls);
+        let (contexts, reached) = contexts(&units, &calls);
+        let sure = sure(&units, &calls);
         let order = order(family, &units, &calls);
         let complete = is_complete(family, &units, &calls);
         let exclusive = units
@@ -153,6 +191,8 @@ impl<'a> ProgramIndex<'a> {
             calls,
             callers,
             contexts,
+            reached,
+            sure,
             order,
             complete,
             partial,
@@ -187,6 +227,55 @@ impl<'a> ProgramIndex<'a> {
         }
         let (x, y) = (&self.contexts[a as usize], &self.contexts[b as usize]);
         x.iter().any(|it| y.contains(it)) && !self.exclusive_units(a, b)
+    }
+
+    /// The tasks that surely run a unit, start-up left out; none when its caller is not known.
+    pub fn tasks(&self, unit: u32) -> impl Iterator<Item = Context> + '_ {
+        let known = self.reached[unit as usize];
+        let contexts = self.contexts[unit as usize].iter().filter(move |_| known);
+        contexts.copied().filter(|it| *it != Context::Startup)
+    }
+
+    /// Whether two units surely run in tasks of which one interrupts the other, and in none that is the same.
+    pub fn in_other_tasks(&self, a: u32, b: u32) -> bool {
+        let has = |unit: u32| self.tasks(unit).next().is_some();
+        has(a) && has(b) && !self.tasks(a).any(|it| self.tasks(b).any(|other| it.is_level_with(other)))
+    }
+
+    /// The tasks that run a unit, for a message: `MAST`, `FAST and EVT1`.
+    pub fn task_names(&self, unit: u32) -> String {
+        let names: Vec<String> = self.tasks(unit).map(|it| it.name(self.family)).collect();
+        names.join(" and ")
+    }
+
+    /// Whether the system or a call surely runs the unit, but not in each scan.
+    pub fn is_passed_by(&self, unit: u32) -> bool {
+        self.reached[unit as usize] && !self.sure[unit as usize] && !self.is_startup(unit)
+    }
+
+    /// A call that depends on a condition, of those that lead to a unit which does not run in each scan.
+    pub fn conditional_call(&self, unit: u32) -> Option<&GlobalCall<'a>> {
+        let mut seen = FxHashSet::default();
+        let mut at = unit;
+        while seen.insert(at) {
+            let callers = self.callers[at as usize].iter().map(|&it| &self.calls[it as usize]);
+            if let Some(call) = callers.clone().find(|it| it.it.conditional) {
+                return Some(call);
+            }
+            at = callers.map(|it| it.unit).next()?;
+        }
+        None
+    }
+
+    /// Whether some run of the unit passes by all its writes of the object that one of its uses is of: number of the
+    /// condition at the first of them.
+    pub fn missed(&self, it: &GlobalUse<'_>) -> Option<u32> {
+        self.units[it.unit as usize].objects.get(it.it.object as usize)?.missed
+    }
+
+    /// Whether an indexed object, which may be any of its area, is written in an area.
+    pub fn is_written_by_index(&self, area: &Area) -> bool {
+        self.objects.iter().any(|it| it.object.indexed && it.object.footprint.area == *area && it.is_written())
     }
 
     /// Whether two calls can both happen in the same scan of the same context.
@@ -346,6 +435,7 @@ fn own_context(entity: &Entity) -> Option<Context> {
         Entity::Pl7 { task: Task::Mast, .. } => Some(Context::Cyclic),
         Entity::Pl7 { task: Task::Fast, .. } => Some(Context::Fast),
         Entity::Pl7 { task: Task::Event(number), .. } => Some(Context::Event(*number)),
+        Entity::Pl7 { task: Task::Numbered(number), .. } => Some(Context::Task(*number)),
         Entity::Block { name: BlockName::Number(BlockKind::Ob, number), .. } => Some(match number {
             1 => Context::Cyclic,
             100..=102 => Context::Startup,
@@ -356,7 +446,8 @@ fn own_context(entity: &Entity) -> Option<Context> {
     }
 }
 
-fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<Vec<Context>> {
+/// Contexts of each unit, and whether they are known.
+fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>>, Vec<bool>) {
     let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
     for call in calls {
         if let Some(target) = call.target.filter(|_| call.it.reachable) {
@@ -374,13 +465,33 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<Vec<Context>>
             }
         }
     }
+    let reached = contexts.iter().map(|it| !it.is_empty()).collect();
     for (unit, list) in contexts.iter_mut().enumerate() {
         if list.is_empty() {
             list.push(own_context(&units[unit].entity).unwrap_or(Context::Cyclic));
         }
         list.sort_unstable();
     }
-    contexts
+    (contexts, reached)
+}
+
+/// Which units surely run. What belongs to a step of a chart runs while the step is active.
+fn sure(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<bool> {
+    let is_chart = |it: &Entity| matches!(it, Entity::Pl7 { part: Part::Chart(_), .. });
+    let mut sure: Vec<bool> = units.iter().map(|it| is_entry(&it.entity) && !is_chart(&it.entity)).collect();
+    let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
+    for call in calls.iter().filter(|it| it.it.reachable && !it.it.conditional) {
+        callees[call.unit as usize].extend(call.target);
+    }
+    let mut stack: Vec<u32> = (0..as_index(units.len())).filter(|&it| sure[it as usize]).collect();
+    while let Some(at) = stack.pop() {
+        for &callee in &callees[at as usize] {
+            if !std::mem::replace(&mut sure[callee as usize], true) {
+                stack.push(callee);
+            }
+        }
+    }
+    sure
 }
 
 /// Depth-first from the entry points in file order, callees where they are called; then what nothing calls. The parts of a
@@ -449,6 +560,8 @@ fn pl7_2_rank(entity: &Entity) -> u32 {
 /// program, of which none but the chart must be there (PL72:1505-1511).
 fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
     units.iter().any(|it| match (family, &it.entity) {
+        // A cross-reference is one of a whole project.
+        _ if it.language == Language::Pl7Xref => true,
         (Family::Pl72, Entity::Pl7 { task, part, .. }) => {
             *task == Task::Mast && matches!(part, Part::Main | Part::Chart(_))
         }
@@ -539,7 +652,8 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
     objects.sort_by_cached_key(|it| {
         let place = &it.object.footprint;
         let rank = ranks.get(&place.area).copied().unwrap_or(u32::MAX);
-        (rank, place.start, std::cmp::Reverse(place.bits), it.object.ty, it.object.indexed)
+        let address = u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits);
+        (address, it.object.ty, it.object.indexed)
     });
     objects
 }

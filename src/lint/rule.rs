@@ -79,7 +79,13 @@ impl Rule {
             "all" => true,
             "pl7" => matches!(
                 language,
-                Language::Pl7Il | Language::Pl7St | Language::Pl7Ld | Language::Pl7Gr7 | Language::Sfc
+                Language::Pl7Il
+                    | Language::Pl7St
+                    | Language::Pl7Ld
+                    | Language::Pl7Gr7
+                    | Language::Sfc
+                    | Language::Exchange
+                    | Language::Pl7Xref
             ),
             // The actions and receptivities of a chart are in any of the languages.
             "ld" => language == Language::Pl7Ld || language.is_chart(),

@@ -15,7 +15,9 @@ use toml::Spanned;
 use super::finding::Severity;
 use super::rule::{Rule, rules};
 use super::select::{Selection, Selector};
+use crate::analysis::program::Context;
 use crate::model::entity::Family;
+use crate::model::object::{self, Class, Object};
 use crate::source::decode::Encoding;
 use crate::source::walk::WalkOptions;
 use crate::target::{Counted, CountedBy, Target};
@@ -148,10 +150,54 @@ pub struct TaskConfig {
     /// `MAST`, `FAST`.
     pub name: String,
     /// `20ms`.
-    pub period: Option<String>,
+    pub period: Option<Milliseconds>,
+    /// `250ms`.
+    pub watchdog: Option<Milliseconds>,
     /// `%I3.8:8`.
     #[serde(default)]
-    pub io: Vec<String>,
+    pub io: Vec<Channels>,
+}
+
+impl TaskConfig {
+    pub fn context(&self) -> Option<Context> {
+        match self.name.to_ascii_uppercase().as_str() {
+            "MAST" => Some(Context::Cyclic),
+            "FAST" => Some(Context::Fast),
+            _ => None,
+        }
+    }
+}
+
+/// A time in milliseconds, written `20ms`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[serde(try_from = "String")]
+pub struct Milliseconds(pub u32);
+
+impl TryFrom<String> for Milliseconds {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let digits = text.trim().strip_suffix("ms").map(str::trim_end);
+        let value = digits.and_then(|it| it.parse().ok());
+        value.map(Self).ok_or_else(|| format!("`{text}` is no time in milliseconds, such as `20ms`"))
+    }
+}
+
+/// One channel of a module or several: `%I1.0`, `%Q4.0:8`, `%IW3.0`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Deserialize)]
+#[serde(try_from = "String")]
+pub struct Channels(pub Object);
+
+impl TryFrom<String> for Channels {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        match object::pl7::parse(text.trim()) {
+            Ok(it) if matches!(it.class, Class::Input | Class::Output) => Ok(Self(it)),
+            Ok(_) => Err(format!("`{text}` is no input or output, such as `%I1.0`")),
+            Err(error) => Err(format!("`{text}` is no input or output: {}", error.message)),
+        }
+    }
 }
 
 /// An event and the channel that raises it.
@@ -161,7 +207,7 @@ pub struct EventConfig {
     /// i of EVTi.
     pub number: u16,
     /// `%I1.0`.
-    pub trigger: Option<String>,
+    pub trigger: Option<Channels>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -399,11 +445,17 @@ impl Settings {
     /// What programs of a family are checked for: the configured controller with the configured counts, when it is one of
     /// that family, else what holds for every controller of the family.
     pub fn target(&self, family: Family) -> Target {
+        self.target_or(family, None)
+    }
+
+    /// As [`Self::target`], for a program that names its controller itself: unless one is configured, it is that one.
+    pub fn target_or(&self, family: Family, named: Option<Target>) -> Target {
+        let or_any = |it: Option<Target>| it.or(named).unwrap_or(Target::any(family));
         let configured = self.controller().and_then(|it| it.parse::<Target>().ok());
         match configured.map(|it| it.with_version(self.version()).unwrap_or(it)) {
-            Some(it) if it.family() != family => Target::any(family),
-            it if self.0.file.objects.is_empty() => it.unwrap_or(Target::any(family)),
-            it => it.unwrap_or(Target::any(family)).with_counts(|key| self.objects(key)),
+            Some(it) if it.family() != family => or_any(None),
+            it if self.0.file.objects.is_empty() => or_any(it),
+            it => or_any(it).with_counts(|key| self.objects(key)),
         }
     }
 
@@ -413,6 +465,25 @@ impl Settings {
 
     pub fn events(&self) -> &[EventConfig] {
         &self.0.file.event
+    }
+
+    /// The task that exchanges an input or output, as far as the configuration tells. Channels that the list of the fast
+    /// task lacks are the master task's, where all are unless someone moves them (PL7:2414).
+    pub fn task_of(&self, object: &Object) -> Option<Context> {
+        let mut fast_is_listed = false;
+        for task in self.tasks() {
+            let Some(context) = task.context() else { continue };
+            fast_is_listed |= context == Context::Fast && !task.io.is_empty();
+            if task.io.iter().any(|it| it.0.footprint.overlaps(&object.footprint)) {
+                return Some(context);
+            }
+        }
+        fast_is_listed.then_some(Context::Cyclic)
+    }
+
+    /// The input whose channel raises an event, as the configuration says.
+    pub fn trigger_of(&self, event: u16) -> Option<&Object> {
+        self.events().iter().find(|it| it.number == event)?.trigger.as_ref().map(|it| &it.0)
     }
 
     pub fn scope(&self) -> ProgramScope {
@@ -654,8 +725,9 @@ mod tests {
         assert_eq!(settings.encoding(), Some(Encoding::Windows1252));
         assert_eq!(settings.entity_address("sub/poste1.st"), Some("MAST SR3"));
         assert_eq!(settings.entity_address("poste2.st"), None);
-        assert_eq!(settings.tasks()[0].io, ["%I3.8:8"]);
-        assert_eq!(settings.events()[0].trigger.as_deref(), Some("%I1.0"));
+        assert_eq!(settings.tasks()[0].io[0].0.text, "%I3.8:8");
+        assert_eq!(settings.tasks()[0].period, Some(Milliseconds(20)));
+        assert_eq!(settings.events()[0].trigger.as_ref().map(|it| it.0.text.as_str()), Some("%I1.0"));
         assert_eq!(settings.scope(), ProgramScope::Folder);
         assert_eq!(on(&settings, "a.st"), ["J005", "W001"]);
         assert_eq!(on(&settings, "../legacy/deep/a.st"), ["J005"]);
@@ -707,6 +779,8 @@ mod tests {
         assert!(error("[files]\nexclude = ['a{']").starts_with("plclint.toml:2:12: "));
         assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));
         assert!(error("[program]\nscope = 'galaxy'").contains("unknown variant"));
+        assert!(error("[[event]]\nnumber = 1\ntrigger = '%M1'").starts_with("plclint.toml:3:11: `%M1` is no input"));
+        assert!(error("[[task]]\nname = 'FAST'\nperiod = '20'").contains("`20` is no time in milliseconds"));
     }
 
     #[test]

@@ -44,6 +44,8 @@ pub struct LiteralError {
     pub message: String,
     /// Whether the constant is a time of STEP 7 (rule C001), or any other (rule V001).
     pub is_s5time: bool,
+    /// Whether it is a floating-point number that the format cannot hold (rule T020).
+    pub is_real_range: bool,
 }
 
 /// How a controller stores a duration in the 16 bits of a STEP 7 timer: three decimal digits and a base (S7:566-579).
@@ -258,7 +260,7 @@ const PL7: Dialect = Dialect {
 };
 
 fn error(message: String) -> LiteralError {
-    LiteralError { message, is_s5time: false }
+    LiteralError { message, is_s5time: false, is_real_range: false }
 }
 
 /// The head of a text that may be of any length.
@@ -355,11 +357,8 @@ fn real(text: &str, dialect: &Dialect) -> Result<Value, LiteralError> {
         } else {
             format!("its magnitude lies below {greatest:e}")
         };
-        return Err(error(format!(
-            "`{}` is beyond the range of a real: {range} ({})",
-            shown(text),
-            dialect.real_source
-        )));
+        let message = format!("`{}` is beyond the range of a real: {range} ({})", shown(text), dialect.real_source);
+        return Err(LiteralError { is_real_range: true, ..error(message) });
     }
     Ok(Value::Real(value))
 }
@@ -480,7 +479,7 @@ fn fraction(decimals: &str, milliseconds: u64) -> u64 {
 }
 
 fn s5time(text: &str) -> Result<Value, LiteralError> {
-    let error = |message| LiteralError { message, is_s5time: true };
+    let error = |message| LiteralError { message, is_s5time: true, is_real_range: false };
     // No days in this form: aH_bM_cS_dMS (S7:481).
     let Some(milliseconds) = duration(text, &UNITS[1..]) else {
         return Err(error(format!("`S5T#{}` is no duration: the form is `S5T#aH_bM_cS_dMS` (S7:481)", shown(text))));

@@ -10,6 +10,7 @@ pub mod literal;
 pub mod lower;
 pub mod object;
 pub mod pl7_kinds;
+pub mod symbols;
 pub mod unit;
 
 pub use unit::UnitModel;

@@ -146,16 +146,24 @@ impl<'t> Kinds<'t> {
     }
 
     fn object(&self, it: ObjectRef<'t>) -> Kind {
-        let text = it.syntax().text();
-        if let Some(&id) = self.model.addresses.get(&*text) {
-            return Kind::of_type(self.model.object(id).ty);
+        self.type_of(Expr::Object(it)).map_or(Kind::Unknown, Kind::of_type)
+    }
+
+    /// Size and form of a direct object, behind parentheses; `None` for any other expression.
+    pub fn type_of(&self, mut expr: Expr<'t>) -> Option<Type> {
+        while let Expr::Paren(it) = expr {
+            expr = it.expr()?;
+        }
+        let Expr::Object(it) = expr else { return None };
+        if let Some(&id) = self.model.addresses.get(&*it.syntax().text()) {
+            return Some(self.model.object(id).ty);
         }
         let address = it.address();
         let object = match it.index() {
             Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()),
             None => object::pl7::parse(&address),
         };
-        object.map_or(Kind::Unknown, |it| Kind::of_type(it.ty))
+        object.ok().map(|it| it.ty)
     }
 
     /// Kind of an operand, whose turn was before.

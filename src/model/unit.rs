@@ -15,6 +15,7 @@ use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
+use super::symbols::{Remark, Symbol};
 use crate::syntax::Language;
 
 /// An input or output of a timer, counter, monostable, register or drum.
@@ -72,6 +73,8 @@ pub enum Mode {
     Reset,
     /// A word, table or text takes a value.
     Store,
+    /// Written in a way that the source does not tell: by assignment, set, reset or store.
+    Write,
     /// The previous value that `FP`/`FN` keeps: read and written.
     EdgeMemory,
     /// A pin of a block takes a condition.
@@ -101,6 +104,7 @@ impl Mode {
                 | Self::Set
                 | Self::Reset
                 | Self::Store
+                | Self::Write
                 | Self::EdgeMemory
                 | Self::InOut
                 | Self::Output
@@ -122,7 +126,7 @@ impl Mode {
             Self::AssignNot => "assigned (negated)",
             Self::Set => "set",
             Self::Reset => "reset",
-            Self::Store => "written",
+            Self::Store | Self::Write => "written",
             Self::EdgeMemory => "used as edge memory",
             Self::Drive(_) => "driven",
             Self::InOut => "passed to a call",
@@ -139,6 +143,8 @@ pub struct Access {
     /// Index of the statement that the access is part of.
     pub statement: u32,
     pub anchor: u32,
+    /// Condition under which control reaches the place, within one run of the unit.
+    pub path: ExprId,
     /// For reads: version of the value read. For writes: version that the write makes.
     pub version: u32,
     /// For reads: whether the value may stem from before this unit's own assignments, so from another unit or scan.
@@ -235,6 +241,8 @@ pub struct Jump {
     pub text: SmolStr,
     /// Range of the target.
     pub range: TextRange,
+    /// The same, for facts.
+    pub anchor: u32,
     pub statement: u32,
     /// Condition at the instruction, without the path to it. TRUE when unconditional.
     pub when: ExprId,
@@ -429,6 +437,24 @@ pub struct Unreachable {
     pub cut_by: TextRange,
 }
 
+/// A part of a program that may hold code, and holds nothing, not even a remark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hollow {
+    pub kind: HollowKind,
+    /// Its keyword, or its head.
+    pub range: TextRange,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum HollowKind {
+    /// What an `IF` does when a condition holds, or when none does.
+    Branch,
+    /// The body of a loop that counts.
+    Loop,
+    /// A network that has a head.
+    Network,
+}
+
 /// A name that a block declares.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Declaration {
@@ -464,12 +490,19 @@ pub struct UnitModel {
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
     pub declarations: Vec<Declaration>,
+    /// Symbols that the unit declares for the program.
+    pub symbols: Vec<Symbol>,
+    /// Comments whose length is limited.
+    pub remarks: Vec<Remark>,
     /// Indexes of PL7 objects, in the order of the text.
     pub indexes: Vec<Index>,
     /// Durations, as written.
     pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,
     pub unreachable: Vec<Unreachable>,
+    pub hollows: Vec<Hollow>,
+    /// Anchor of the first operation of PL7 that can overflow.
+    pub computes: Option<u32>,
     /// Ranges that facts name; the first is the unit's heading.
     pub anchors: Vec<TextRange>,
     /// For a data block: the block that it is an instance of.

@@ -13,6 +13,7 @@ use crate::model::entity::BlockKind;
 use crate::syntax::pl7::ladder_words;
 
 use super::scan::{Comments, Lines};
+use super::stx;
 
 /// What the user says that files are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -110,6 +111,8 @@ pub enum Detected {
     Pl72,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
+    /// A PL7 project: its text is the listing of its tables.
+    Stx,
     /// Part of a controller program, in a form that plclint does not read. `what` names the form.
     Unsupported { what: &'static str },
     /// It should be a controller program by its name, or was asked for, and is not text. `why` completes "not read: ".
@@ -229,12 +232,29 @@ pub fn has_plc_extension(path: &Path) -> bool {
 
 /// Decodes and recognises a file. Data that is not text is not decoded: its text is empty.
 pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (SourceText, Detected) {
+    if let Some(project) = project(hint, bytes, encoding) {
+        return match project {
+            Ok(source) => (source, Detected::Stx),
+            Err(why) => (decode(b"", encoding), Detected::Unreadable { why }),
+        };
+    }
     if let Some(detected) = detect_binary(hint, bytes, encoding) {
         return (decode(b"", encoding), detected);
     }
     let source = decode(bytes, encoding);
     let detected = detect(hint, &source.text);
     (source, detected)
+}
+
+/// The listing of a PL7 project, or why it has none; `None` if the bytes are no project.
+fn project(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> Option<Result<SourceText, &'static str>> {
+    let by_name = matches!(extension(hint.path), Extension::Form(unsupported::PROJECT, _));
+    if !(by_name || hint.explicit) || hint.dialect == Dialect::Step7 || !stx::is_archive(bytes) {
+        return None;
+    }
+    let listing = stx::listing(bytes, encoding.filter(|it| it.is_single_byte()));
+    // Archives of all kinds go by other names.
+    if by_name { Some(listing) } else { listing.ok().map(Ok) }
 }
 
 /// What a file is whose bytes are not text in the given encoding; `None` if they are.
@@ -304,12 +324,16 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
             | Extension::St
             | Extension::Ld
             | Extension::Gr7
-            | Extension::Form(
-                unsupported::DFB | unsupported::VARIABLES | unsupported::APPLICATION | unsupported::ENCRYPTED,
-                _
-            )
+            | Extension::Form(unsupported::DFB | unsupported::VARIABLES | unsupported::APPLICATION, _)
     );
+    // The header of an encrypted block may be legible; what matters is not.
+    if extension == Extension::Form(unsupported::ENCRYPTED, Storage::Either) {
+        return Detected::Unsupported { what: unsupported::ENCRYPTED };
+    }
     if tally.is_exchange() || of_pl7 && tally.blocks > 0 {
+        return Detected::Exchange;
+    }
+    if extension == Extension::Form(unsupported::VARIABLES, Storage::Text) && tally.variables > 0 {
         return Detected::Exchange;
     }
     if !matches!(extension, Extension::Form(..))
@@ -333,6 +357,8 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Il | Extension::St if tally.lines == 0 || weak && tally.il + tally.st > 0 => {
             Detected::Pasted(tally.pl7_text(extension))
         }
+        // A sentence or an expression alone: nothing but what has addresses or marks of PL7.
+        Extension::Il | Extension::St if tally.pl7 == tally.lines => Detected::Pasted(tally.pl7_text(extension)),
         Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
         Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
         Extension::Sfc if tally.chart > 0 => Detected::Pasted(Pl7Text::Sfc),
@@ -346,6 +372,13 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         }
         _ => Detected::NotPlc,
     }
+}
+
+/// Whether a line declares a variable, with an address or a type.
+fn is_variable(line: &str) -> bool {
+    let (name, rest) = word(line);
+    let rest = rest.trim_start();
+    !name.is_empty() && (rest.starts_with("AT %") || rest.starts_with("at %") || rest.starts_with(':'))
 }
 
 /// How much of a text is looked at.
@@ -385,6 +418,8 @@ struct Tally {
     in_code_block: bool,
     /// Declaration sections and program units of IEC 61131-3.
     iec: u32,
+    /// `Pump AT %M0 : EBOOL;`
+    variables: u32,
     /// Words that frame rungs, and elements of them.
     rung: u32,
     cells: u32,
@@ -456,6 +491,7 @@ impl Tally {
         let first = word(code).0.to_ascii_uppercase();
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
+        self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
             Some(Pl7Text::Il) => self.il += 1,
             Some(Pl7Text::St) => {
@@ -967,7 +1003,10 @@ mod tests {
         check("a.st", "Moteur := Depart AND NOT Arret;\n", ST);
         check("a.st", "VAR\n x : INT;\nEND_VAR\nx := x + 1;\n", unsupported(unsupported::IEC));
         check("a.dfb", "FUNCTION_BLOCK Cpt\nEND_FUNCTION_BLOCK", unsupported(unsupported::DFB));
-        check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", unsupported(unsupported::VARIABLES));
+        check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", Detected::Exchange);
+        check("a.scy", "Cpt_vis : Cpt_pieces;", Detected::Exchange);
+        check("a.scy", "Dear reader", unsupported(unsupported::VARIABLES));
+        check("a.ufb", "[HEADER]\n[SOURCE_UNIT]\nA8F0\n[EOF]", unsupported(unsupported::ENCRYPTED));
         check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
         check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", Detected::Pasted(Pl7Text::Gr7));
         check(
@@ -1009,7 +1048,7 @@ mod tests {
             ("a.stl", Detected::NotPlc),
             ("a.txt", Detected::NotPlc),
             ("a.db", Detected::NotPlc),
-            ("a.stx", unsupported(unsupported::PROJECT)),
+            ("a.stx", Detected::Unreadable { why: stx::DAMAGED }),
             ("a.ufb", unsupported(unsupported::ENCRYPTED)),
             ("a.zef", unsupported(unsupported::CONTROL_EXPERT)),
         ] {

@@ -49,6 +49,7 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::Step7 => step7(&mut units, hint),
         Detected::Pasted(default) => pasted(&mut units, default, hint),
         Detected::Exchange => exchange(&mut units),
+        Detected::Stx => project(&mut units),
         Detected::Pl72 => pl7_2(&mut units, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
             units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
@@ -56,6 +57,91 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::NotPlc => units.push(0, Draft { unsupported: Some("not a PLC program"), ..Draft::container() }),
     }
     units.finish()
+}
+
+/// What [`split`] makes of `new`, found without reading all of it: an edit inside of one unit leaves the cuts around it
+/// where they are. `None` when that is not sure; `spans` is what [`split`] made of `old`.
+///
+/// The edited unit is cut again together with the next one, whose text is the same: where both come out as they were,
+/// the text behind them starts in the same state as before.
+pub fn resplit(
+    old: &str,
+    spans: &[UnitSpan],
+    new: &str,
+    detected: Detected,
+    hint: &SplitHint,
+) -> Option<Vec<UnitSpan>> {
+    let is_own = |it: &UnitSpan| match detected {
+        Detected::Step7 => matches!(it.entity, Entity::Block { .. }),
+        Detected::Pasted(_) => true,
+        _ => false,
+    };
+    let changed = common_start(old.as_bytes(), new.as_bytes());
+    let changed_end = old.len() - common_end(&old.as_bytes()[changed..], &new.as_bytes()[changed..]);
+    let start = |it: &UnitSpan| usize::from(it.range.start());
+    let end = |it: &UnitSpan| usize::from(it.range.end());
+    let at = spans.partition_point(|it| end(it) <= changed).min(spans.len().checked_sub(1)?);
+    let (unit, next) = (&spans[at], spans.get(at + 1));
+    // Of a unit that starts within a line, the blanks before it are the one's before.
+    let starts_line = at == 0 || old[..start(unit)].ends_with(['\n', '\r']);
+    if changed_end > end(unit) || !starts_line || !is_own(unit) || next.is_some_and(|it| !is_own(it)) {
+        return None;
+    }
+    let moved = |offset: usize| (offset + new.len()).checked_sub(old.len());
+    let part = new.get(start(unit)..moved(next.map_or(end(unit), end))?)?;
+    let mut hint = hint.clone();
+    if let (Detected::Step7, Language::Awl(before)) = (detected, unit.language) {
+        if hint.mnemonics.is_none() && mnemonics(new) != before {
+            return None;
+        }
+        hint.mnemonics = Some(before);
+    }
+    let cut = split(part, detected, &hint);
+    let same =
+        |a: &UnitSpan, b: &UnitSpan| a.entity == b.entity && a.language == b.language && a.unsupported == b.unsupported;
+    let expected: Vec<&UnitSpan> = [unit].into_iter().chain(next).collect();
+    let is_same = cut.len() == expected.len() && cut.iter().zip(expected).all(|(a, b)| same(a, b));
+    // Without a heading of its own, only the first unit is what the hint says.
+    let is_named = at == 0 || heading_of(part, detected);
+    let border = moved(end(unit))?;
+    if !is_same || !is_named || cut.first().is_none_or(|it| start(unit) + end(it) != border) {
+        return None;
+    }
+    let offset = |at: usize| TextSize::try_from(at).ok();
+    let mut result = spans[..at].to_vec();
+    result.push(UnitSpan { range: TextRange::new(unit.range.start(), offset(border)?), ..unit.clone() });
+    for it in &spans[at + 1..] {
+        result.push(UnitSpan {
+            range: TextRange::new(offset(moved(start(it))?)?, offset(moved(end(it))?)?),
+            ..it.clone()
+        });
+    }
+    Some(result)
+}
+
+/// Number of bytes that two texts begin with, in strides that the processor compares at once.
+fn common_start(a: &[u8], b: &[u8]) -> usize {
+    const STRIDE: usize = 256;
+    let strides = a.chunks_exact(STRIDE).zip(b.chunks_exact(STRIDE)).take_while(|it| it.0 == it.1).count();
+    let at = strides * STRIDE;
+    at + a[at..].iter().zip(&b[at..]).take_while(|it| it.0 == it.1).count()
+}
+
+fn common_end(a: &[u8], b: &[u8]) -> usize {
+    const STRIDE: usize = 256;
+    let strides = a.rchunks_exact(STRIDE).zip(b.rchunks_exact(STRIDE)).take_while(|it| it.0 == it.1).count();
+    let (a, b) = (&a[..a.len() - strides * STRIDE], &b[..b.len() - strides * STRIDE]);
+    strides * STRIDE + a.iter().rev().zip(b.iter().rev()).take_while(|it| it.0 == it.1).count()
+}
+
+/// Whether the first line of code in a unit's text is what names the unit.
+fn heading_of(part: &str, detected: Detected) -> bool {
+    let comments = if detected == Detected::Step7 { Comments::Step7 } else { Comments::Pl7 };
+    let mut codes = Lines::new(part, comments).map(|it| it.code).filter(|it| !it.is_empty() && !it.starts_with("//"));
+    codes.next().is_some_and(|it| match detected {
+        Detected::Step7 => block_header(it).is_some(),
+        _ => pl7_heading(it).is_some(),
+    })
 }
 
 /// A unit whose end is not known yet.
@@ -339,16 +425,22 @@ fn exchange(units: &mut Units<'_>) {
     let mut state = State::Ended;
     let mut keys = SourceUnit::default();
     let mut pages = 0;
-    for line in Lines::new(units.text, Comments::Pl7) {
+    let mut lines = Lines::new(units.text, Comments::Pl7);
+    while let Some(line) = lines.next() {
         if line.code.is_empty() {
             continue;
         }
         let mut code = line.code;
         if let Some((block, rest)) = exchange_block(code) {
-            let unsupported = (block == "[DATA_UNIT]").then_some(unsupported::VARIABLES);
-            units.push(units.code_end, Draft { label: Some(block.into()), unsupported, ..Draft::container() });
+            units.push(units.code_end, Draft { label: Some(block.into()), ..Draft::container() });
             keys = SourceUnit::default();
             state = if block == "[SOURCE_UNIT]" { State::Keys } else { State::Other };
+            if block == "[VENDOR]" {
+                // What looks like a comment in there need not be one.
+                units.code_end = next_block(units.text, line.code_start + line.code.len());
+                lines.skip_to(units.code_end);
+                continue;
+            }
             code = rest;
         } else if state == State::Ended {
             units.push(units.code_end, Draft::container());
@@ -381,6 +473,51 @@ fn exchange(units: &mut Units<'_>) {
     if units.drafts.is_empty() {
         units.push(0, Draft::container());
     }
+}
+
+/// Start of the first line after an offset that begins a block; the end of the text without one.
+fn next_block(text: &str, from: usize) -> usize {
+    let mut at = from;
+    for line in text.get(from..).unwrap_or_default().split_inclusive(['\n', '\r']) {
+        if at > from && exchange_block(line.trim_start()).is_some() {
+            return at;
+        }
+        at += line.len();
+    }
+    text.len()
+}
+
+/// The listing of a PL7 project: blocks in brackets, of which those of the cross-reference name what they belong to.
+fn project(units: &mut Units<'_>) {
+    let mut start = 0;
+    for line in units.text.split_inclusive('\n') {
+        let code = line.trim_end();
+        if let Some(address) = code.strip_prefix("[XREF] ") {
+            units.push(start, Draft::new(project_entity(address), Some(Language::Pl7Xref)));
+        } else if code.starts_with('[') || start == 0 {
+            let label = (!code.is_empty()).then(|| code.into());
+            units.push(start, Draft { label, ..Draft::container() });
+        }
+        start += line.len();
+    }
+    if units.drafts.is_empty() {
+        units.push(0, Draft::container());
+    }
+}
+
+/// `MAST - module 0`, `MAST - CHART - PAGE 0 %X1`, `task 516 - SR3`.
+fn project_entity(address: &str) -> Entity {
+    if let Some(entity) = pl7_address(address) {
+        return entity;
+    }
+    let (task, rest) = address.split_once(" - ").unwrap_or((address, ""));
+    let named = pl7_address(task).and_then(|it| it.task());
+    let number = task.strip_prefix("task ").and_then(|it| it.parse().ok());
+    let task = named.or(number.map(Task::Numbered)).unwrap_or(Task::Mast);
+    if rest.starts_with("CHART") {
+        return Entity::Pl7 { task, section: None, part: Part::Chart(rest.into()) };
+    }
+    Entity::Pl7 { task, section: Some(rest.into()), part: Part::Main }
 }
 
 fn ends_program(code: &str) -> bool {
@@ -732,7 +869,7 @@ mod tests {
                 ("[EOF]", KEYS, "[EOF]\n"),
             ],
         );
-        assert_eq!(units[6].unsupported, Some(unsupported::VARIABLES));
+        assert_eq!(unsupported(&units), [None; 8]);
     }
 
     #[test]
@@ -864,7 +1001,69 @@ mod tests {
         TYPE UDT 1|Bloc FC[12] :|// |\\(\\*|\\*\\)|['\"]|TITLE =|ST : MAST - SR[12]|LD : EVT1|IL : MAST - A - PRL|\
         \\[SOURCE_UNIT\\]|\\[EOF\\]|\\[HEADER|PROGRAM|END_PROGRAM|NAME = 'MAST_|ADDRESS=|LANGUAGE=|LD %M0|RUNG|%M0 := 1;";
 
+    const EDITED: [(&str, Detected); 2] = [
+        (
+            "// head\nFUNCTION FC 1 : VOID\nBEGIN\n U E 0.0 // a (* b\n = A 4.0\nEND_FUNCTION\n\n// of FB 1\nFUNCTION_BLOCK \
+             FB 1\nVAR\n x : INT;\nEND_VAR\nBEGIN\n(* two\n lines *) U E 0.1; = A 0.1\nEND_FUNCTION_BLOCK DATA_BLOCK DB 1 \
+             FB 1\nBEGIN\nEND_DATA_BLOCK\nFUNCTION FC 1 : VOID\nBEGIN\nBE\nEND_FUNCTION\n",
+            Detected::Step7,
+        ),
+        (
+            "! %M0 := %M1; (* c *)\nST : MAST - SR1\n! (* d\n e *) %M2 := %M3;\n\n(* of SR2 *)\nIL : MAST - SR2\n! LD %M4\n \
+             ST %M5\nST : MAST - SR1\n! %M6 := 'a';\nLD : MAST - SR4\nRUNG END_RUNG\nST : EVT3\n! %M7:=%M8;",
+            Detected::Pasted(Pl7Text::St),
+        ),
+    ];
+
+    const SNIPPETS: [&str; 17] = [
+        "",
+        "\n",
+        " ",
+        "(*",
+        "*)",
+        "//",
+        "'",
+        "x",
+        "U E 0.5\n",
+        "END_FUNCTION\n",
+        "FUNCTION FC 7 : VOID\n",
+        "TYPE UDT 3\n",
+        "ST : MAST - SR1\n",
+        "IL : MAST - SR9\n",
+        "! %M0:=%M1;\n",
+        "NETWORK\nTITLE = (* x\n",
+        "A I 0.0\nA I 0.1\n",
+    ];
+
+    /// An edit inside of a unit takes the short way.
+    #[test]
+    fn short_way() {
+        for (text, detected) in EDITED {
+            let spans = split(text, detected, &SplitHint::default());
+            let at = text.find(if detected == Detected::Step7 { "E 0.1" } else { "%M3" }).expect("a place");
+            let edited = format!("{}9{}", &text[..at + 2], &text[at + 2..]);
+            let found = resplit(text, &spans, &edited, detected, &SplitHint::default());
+            assert_eq!(found, Some(split(&edited, detected, &SplitHint::default())));
+        }
+    }
+
     proptest! {
+        #[test]
+        fn an_edit_is_cut_as_the_whole_would_be(
+            which in 0..EDITED.len(),
+            from in 0..400_usize,
+            length in 0..40_usize,
+            snippet in 0..SNIPPETS.len(),
+        ) {
+            let (text, detected) = EDITED[which];
+            let (from, to) = (from.min(text.len()), (from + length).min(text.len()));
+            let edited = format!("{}{}{}", &text[..from], SNIPPETS[snippet], &text[to..]);
+            let spans = split(text, detected, &SplitHint::default());
+            if let Some(found) = resplit(text, &spans, &edited, detected, &SplitHint::default()) {
+                prop_assert_eq!(found, split(&edited, detected, &SplitHint::default()));
+            }
+        }
+
         #[test]
         fn units_tile_any_text(pieces in prop::collection::vec(PIECES, 0..24)) {
             let text = pieces.concat();

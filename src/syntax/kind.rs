@@ -195,6 +195,12 @@ kinds! {
     // Exchange container nodes.
     ExchangeBlock,
     KeyValue,
+
+    // Cross-reference nodes.
+    /// `@20`: the place in a module that the entries below stand in.
+    XrefPlace,
+    /// `%M10 W`.
+    XrefEntry,
 }
 
 impl SyntaxKind {

@@ -13,6 +13,7 @@ pub mod awl;
 pub mod exchange;
 pub mod pl7;
 pub mod pl72;
+pub mod xref;
 
 pub use kind::SyntaxKind;
 pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
@@ -44,6 +45,8 @@ pub enum Language {
     Sfc,
     /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
     Exchange,
+    /// The cross-reference of a PL7 project whose code is not readable.
+    Pl7Xref,
 }
 
 impl Language {
@@ -62,6 +65,7 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Pl7Gr7 | Language::Sfc => pl7::parse_chart(text),
         Language::Pl7Ld => pl7::parse_ld(text),
         Language::Exchange => exchange::parse(text),
+        Language::Pl7Xref => xref::parse(text),
     }
 }
 

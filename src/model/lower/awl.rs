@@ -18,12 +18,12 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Leave, LoopKind, Mode, OddityKind, Pin, Section,
-    StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind,
+    Pin, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};
-use crate::syntax::{Language, Mnemonics, SyntaxKind, SyntaxNode};
+use crate::syntax::{Language, Mnemonics, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
 /// Lowers one block or listing.
@@ -222,6 +222,34 @@ impl Machine {
                     _ => {}
                 }
             }
+        }
+        self.hollows(block);
+    }
+
+    /// Notes networks with nothing below their head. A remark there is part of the block.
+    fn hollows(&mut self, block: SyntaxNode<'_>) {
+        let code = [SyntaxKind::Instr, SyntaxKind::Error, SyntaxKind::Elision, SyntaxKind::Comment];
+        // The head of the last network, while nothing was found below it.
+        let mut bare: Option<TextRange> = None;
+        for element in block.children_with_tokens() {
+            match element {
+                SyntaxElement::Token(it) if it.kind() == SyntaxKind::Comment => bare = None,
+                SyntaxElement::Token(_) => {}
+                SyntaxElement::Node(it) => {
+                    self.hollow(bare.take());
+                    let header = ast::Network::cast(it).and_then(ast::Network::header);
+                    let head = header.and_then(|it| it.syntax().descendant_tokens().find(|it| !it.kind().is_trivia()));
+                    let is_bare = !it.children_with_tokens().any(|it| code.contains(&it.kind()));
+                    bare = head.filter(|_| is_bare).map(|it| it.text_range());
+                }
+            }
+        }
+        self.hollow(bare);
+    }
+
+    fn hollow(&mut self, head: Option<TextRange>) {
+        if let Some(range) = head {
+            self.b.model.hollows.push(Hollow { kind: HollowKind::Network, range });
         }
     }
 

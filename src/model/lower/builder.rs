@@ -82,10 +82,14 @@ impl Builder {
             calls: Vec::new(),
             loops: Vec::new(),
             declarations: Vec::new(),
+            symbols: Vec::new(),
+            remarks: Vec::new(),
             indexes: Vec::new(),
             constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),
+            hollows: Vec::new(),
+            computes: None,
             anchors: vec![heading],
             instance_of: None,
             instructions: 0,
@@ -154,6 +158,13 @@ impl Builder {
         id
     }
 
+    /// Notes an operation that can overflow.
+    pub(super) fn computes(&mut self, range: TextRange) {
+        if self.model.computes.is_none() {
+            self.model.computes = Some(self.anchor(range));
+        }
+    }
+
     /// A place that facts can name.
     pub(super) fn anchor(&mut self, range: TextRange) -> u32 {
         self.model.anchors.push(range);
@@ -163,7 +174,16 @@ impl Builder {
     fn access(&mut self, object: ObjectId, mode: Mode, range: TextRange, version: u32, exposed: bool) -> u32 {
         let anchor = self.anchor(range);
         let statement = index(self.model.statements.len());
-        self.model.accesses.push(Access { object, mode, statement, anchor, version, exposed, parameter: None });
+        self.model.accesses.push(Access {
+            object,
+            mode,
+            statement,
+            anchor,
+            path: self.path,
+            version,
+            exposed,
+            parameter: None,
+        });
         index(self.model.accesses.len() - 1)
     }
 
@@ -394,8 +414,9 @@ impl Builder {
     pub(super) fn jump(&mut self, label: SmolStr, text: SmolStr, at: TextRange, when: ExprId, range: TextRange) {
         let target = self.label_index.get(&label).copied();
         let statement = index(self.model.statements.len());
+        let anchor = self.anchor(at);
         let part = self.part;
-        self.model.jumps.push(Jump { label: label.clone(), text, range: at, statement, when, target, part });
+        self.model.jumps.push(Jump { label: label.clone(), text, range: at, anchor, statement, when, target, part });
         let jump = index(self.model.jumps.len() - 1);
         self.statement(StatementKind::Jump(jump), range);
         let taken = self.model.exprs.and(self.path, when);

@@ -3,12 +3,12 @@
 mod awl;
 mod builder;
 mod chart;
+mod exchange;
 mod il;
 mod ladder;
 mod pl7;
 mod st;
-
-use rowan::TextRange;
+mod xref;
 
 use super::UnitModel;
 use super::entity::Entity;
@@ -21,15 +21,11 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
+        Language::Exchange => exchange::lower(root, text, entity),
+        Language::Pl7Xref => xref::lower(root, entity),
         Language::Pl7Ld => ladder::lower(root, text, entity),
         Language::Pl7Gr7 | Language::Sfc => chart::lower(root, text, entity, language),
-        Language::Exchange => empty(entity, language),
     }
-}
-
-/// The model of a unit without code.
-fn empty(entity: Entity, language: Language) -> UnitModel {
-    builder::Builder::new(entity, language, TextRange::default()).finish()
 }
 
 #[cfg(test)]

@@ -281,6 +281,9 @@ impl Pl7 {
             _ => Kind::Unknown,
         };
         let Some(op) = it.op() else { return self.optional(None) };
+        if matches!(op, BinOp::Add | BinOp::Sub | BinOp::Mul | BinOp::Div) {
+            self.b.computes(it.syntax().text_range());
+        }
         let exprs = self.b.exprs();
         let arithmetic = |operator| (operator, number);
         let (operator, kind) = match op {

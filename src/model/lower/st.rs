@@ -10,9 +10,9 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs};
 use crate::model::object::Rights;
-use crate::model::unit::{DeadCause, Leave, Loop, LoopKind, StatementKind};
+use crate::model::unit::{DeadCause, Hollow, HollowKind, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
-use crate::syntax::{Language, SyntaxNode};
+use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     let mut pl7 = Pl7::new(root, entity, Language::Pl7St);
@@ -106,6 +106,7 @@ impl Lowering {
             let cut = (open != Exprs::FALSE).then_some((DeadCause::FalseCondition, at));
             let taken = self.pl7.b.exprs().and(open, condition);
             self.pl7.b.enter(taken, cut);
+            self.hollow(HollowKind::Branch, arm.syntax(), arm.body());
             self.list(arm.body());
             ends.push(self.pl7.b.path());
             let not = self.pl7.b.exprs().not(condition);
@@ -113,6 +114,7 @@ impl Lowering {
             self.pl7.b.enter(open, cut);
         }
         if let Some(arm) = it.else_arm() {
+            self.hollow(HollowKind::Branch, arm.syntax(), arm.body());
             self.list(arm.body());
             open = self.pl7.b.path();
         }
@@ -197,9 +199,23 @@ impl Lowering {
         let runs = self.pl7.b.exprs().opaque();
         let inside = self.pl7.b.exprs().and(before, runs);
         self.pl7.b.enter(inside, None);
+        self.hollow(HollowKind::Loop, it.syntax(), it.body());
         self.list(it.body());
         self.pl7.b.close_loop();
         self.pl7.b.enter(before, None);
+    }
+
+    /// Notes a body without a statement that does anything.
+    fn hollow(&mut self, kind: HollowKind, node: SyntaxNode<'_>, body: Option<ast::StmtList<'_>>) {
+        let is_remark = |it: SyntaxToken<'_>| it.kind() == SyntaxKind::Comment;
+        let mut statements = body.into_iter().flat_map(|it| it.statements());
+        let is_odd = |it: SyntaxElement<'_>| matches!(it.kind(), SyntaxKind::Error | SyntaxKind::Elision);
+        if statements.all(|it| matches!(it, Stmt::Empty(_))) && !node.children_with_tokens().any(is_odd) {
+            let range = keyword(node);
+            if !node.descendant_tokens().any(is_remark) {
+                self.pl7.b.model.hollows.push(Hollow { kind, range });
+            }
+        }
     }
 }
 

@@ -38,6 +38,14 @@ pub fn parse_st(text: &str) -> Parse {
     grammar::parse(text, Dialect::St)
 }
 
+/// Whether a word means something in the language, in any case: a keyword, an instruction, a function, a subroutine.
+pub fn is_reserved(text: &str) -> bool {
+    word::Keyword::of(text).is_some()
+        || instructions::lookup(text).is_some()
+        || functions::lookup(text).is_some()
+        || word::subroutine(text).is_some()
+}
+
 /// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
 pub fn parse_chart(text: &str) -> Parse {
     grammar::parse_chart(text)

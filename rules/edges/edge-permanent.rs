@@ -1,0 +1,21 @@
+//! E007: the edge of a bit that is not written in every scan, so that the edge stays.
+
+use crate::analysis::{Site, edges};
+use crate::lint::{ProgramCx, Sink};
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    for (at, uses) in (0..).zip(&cx.program.objects) {
+        if !uses.uses.iter().any(|it| it.mode.is_edge()) {
+            continue;
+        }
+        let Some((edge, write)) = edges::permanent(cx.program, uses, cx.neighbours(at)) else { continue };
+        let name = &uses.object.text;
+        let mut finding = sink
+            .report(edge.site(), format!("the edge of `{name}` stays while the bit is not written"))
+            .related(write.site(), "not written in every scan");
+        if let Some(call) = cx.program.conditional_call(write.unit).filter(|_| cx.program.is_passed_by(write.unit)) {
+            finding = finding.related(call.site(), "this call depends on a condition");
+        }
+        finding.note("an edge is there until its bit is written again (PL7:1468)");
+    }
+}

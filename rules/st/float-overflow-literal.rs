@@ -1,0 +1,20 @@
+//! T020: a floating-point number that its format cannot hold.
+
+use rowan::TextRange;
+
+use crate::lint::{Sink, UnitCx};
+use crate::model::unit::OddityKind;
+use crate::syntax::Language;
+
+pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St) {
+        return;
+    }
+    for oddity in &cx.model.oddities {
+        if let OddityKind::Literal(error) = &oddity.kind
+            && error.is_real_range
+        {
+            sink.report(oddity.range, error.message.clone());
+        }
+    }
+}

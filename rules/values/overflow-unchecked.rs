@@ -1,0 +1,29 @@
+//! V004: arithmetic of which no code asks whether it overflowed.
+
+use crate::analysis::Site;
+use crate::lint::{ProgramCx, Sink};
+use crate::model::entity::Family;
+use crate::model::object::Area;
+
+/// `%S18` says that an operation overflowed, or divided by zero.
+const OVERFLOW: u32 = 18;
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    let program = cx.program;
+    if program.family != Family::Pl7 || !program.complete {
+        return;
+    }
+    let is_asked = program.objects.iter().any(|it| {
+        let place = &it.object.footprint;
+        let covers = it.object.indexed || (place.start <= OVERFLOW && OVERFLOW < place.end());
+        place.area == Area::SystemBits && covers && it.is_read()
+    });
+    let mut computing: Vec<Site> =
+        (0..).zip(&program.units).filter_map(|(unit, facts)| Some(Site { unit, anchor: facts.computes? })).collect();
+    computing.sort_by_key(|it| (program.order[it.unit as usize], it.anchor));
+    let Some((&first, others)) = computing.split_first().filter(|_| !is_asked) else { return };
+    let more = others.iter().map(|it| (*it, format!("{} computes, too", program.entity(it.unit))));
+    sink.report(first, "the program computes, and never asks whether a result overflowed")
+        .related_all(more)
+        .note("`%S18` says so, and stays until the program resets it");
+}

@@ -1,0 +1,108 @@
+//! What a run of a unit can pass by: writes that leave an object as it was, edge tests and blocks that a jump skips.
+
+use rustc_hash::FxHashMap;
+
+use super::conditions::{self, Verdict};
+use crate::model::UnitModel;
+use crate::model::expr::{ExprId, Exprs};
+use crate::model::unit::{Access, Mode, Statement, StatementKind};
+
+/// More writes of one object than this are not compared with one another: what they leave out is not known.
+const MAX_WRITES: usize = 32;
+
+/// Runs of a unit in which it writes an object, or drives a block.
+#[derive(Debug)]
+pub struct Writes {
+    /// Of each place, the conditions that hold together when it is executed.
+    places: Vec<[ExprId; 2]>,
+    /// Some place lies in a loop, or there are too many: they are not looked into.
+    is_open: bool,
+}
+
+impl Writes {
+    /// Whether some run of the unit, in which the condition holds and none of the exits is taken, passes all places by
+    /// for certain.
+    pub fn leave_out(&self, exprs: &Exprs, given: ExprId, exits: &[[ExprId; 2]]) -> bool {
+        if self.is_open || self.places.contains(&[Exprs::TRUE; 2]) {
+            return false;
+        }
+        let places: Vec<[ExprId; 2]> = self.places.iter().chain(exits).copied().collect();
+        conditions::without(exprs, &[given], &places) == Verdict::Possible
+    }
+
+    /// The condition of the first place.
+    pub fn first(&self) -> ExprId {
+        self.places.first().map_or(Exprs::TRUE, |it| it[0])
+    }
+}
+
+/// Whether a place gives an object a value, or evaluates an input of a block, whenever it is reached.
+fn is_given(mode: Mode) -> bool {
+    mode.assigns() || mode == Mode::Store || matches!(mode, Mode::Drive(_))
+}
+
+/// The writes of each object that is written.
+pub fn writes(model: &UnitModel) -> FxHashMap<u32, Writes> {
+    let mut found: FxHashMap<u32, Writes> = FxHashMap::default();
+    for access in model.accesses.iter().filter(|it| is_given(it.mode)) {
+        let statement = model.statement(access);
+        let when = match statement.map(|it| &it.kind) {
+            Some(StatementKind::Call(call)) => model.calls.get(*call as usize).map_or(Exprs::TRUE, |it| it.when),
+            _ => Exprs::TRUE,
+        };
+        let object = model.object(access.object);
+        if access.path == Exprs::FALSE || !object.is_fixed() {
+            continue;
+        }
+        let writes = found.entry(access.object.0).or_insert_with(|| Writes { places: Vec::new(), is_open: false });
+        writes.is_open |= statement.is_some_and(|it| it.in_loop.is_some()) || writes.places.len() >= MAX_WRITES;
+        if !writes.is_open {
+            writes.places.push([access.path, when]);
+        }
+    }
+    found
+}
+
+/// Conditions under which a run ends early, goes back, or jumps to a label that is not there: what it passes by then is
+/// not left out by an `IF` or a jump past it.
+pub fn exits(model: &UnitModel) -> Vec<[ExprId; 2]> {
+    let exit = |statement: &Statement| match statement.kind {
+        StatementKind::Return { when, .. } => Some([statement.path, when]),
+        StatementKind::Halt => Some([statement.path, Exprs::TRUE]),
+        // Outside of a loop it leaves nothing.
+        StatementKind::Exit if statement.in_loop.is_none() => Some([statement.path, Exprs::TRUE]),
+        StatementKind::Jump(jump) => {
+            let jump = model.jumps.get(jump as usize)?;
+            let target = jump.target.and_then(|it| model.labels.get(it as usize));
+            let is_forward = target.is_some_and(|it| it.statement > jump.statement);
+            (!is_forward).then_some([statement.path, jump.when])
+        }
+        _ => None,
+    };
+    model.statements.iter().filter_map(exit).take(MAX_WRITES).collect()
+}
+
+/// For each statement, the jump that can skip it: the one before it that leads furthest. An index into the jumps.
+pub fn skips(model: &UnitModel) -> Vec<Option<u32>> {
+    let mut skips = vec![None; model.statements.len()];
+    // Jumps stand in the order of their statements.
+    let mut jumps = (0..).zip(&model.jumps).peekable();
+    let mut furthest: Option<(u32, u32)> = None;
+    for (at, skip) in (0..).zip(&mut skips) {
+        while let Some((index, jump)) = jumps.next_if(|it| it.1.statement < at) {
+            let end = jump.target.and_then(|it| model.labels.get(it as usize)).map_or(0, |it| it.statement);
+            let reached = model.statements.get(jump.statement as usize).is_some_and(|it| it.path != Exprs::FALSE);
+            if reached && jump.when != Exprs::FALSE && furthest.is_none_or(|it| it.1 <= at || it.1 < end) {
+                furthest = Some((index, end));
+            }
+        }
+        *skip = furthest.filter(|it| it.1 > at).map(|it| it.0);
+    }
+    skips
+}
+
+/// The jump that can skip an access, an index into the jumps.
+pub fn skip(skips: &[Option<u32>], access: &Access) -> Option<u32> {
+    let is_reached = access.path != Exprs::TRUE && access.path != Exprs::FALSE;
+    skips.get(access.statement as usize).copied().flatten().filter(|_| is_reached)
+}
