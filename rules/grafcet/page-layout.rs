@@ -66,8 +66,8 @@ impl Element {
         let is_inner = line > 0 && line < last;
         match self {
             Self::Step => is_inner && line % 2 == 1,
-            Self::Transition => is_inner && line % 2 == 0,
-            Self::Connector(ConnectorKind::Origin) => line % 2 == 0 && line < last,
+            Self::Transition => is_inner && line.is_multiple_of(2),
+            Self::Connector(ConnectorKind::Origin) => line.is_multiple_of(2) && line < last,
             Self::Connector(ConnectorKind::Destination) => line > 0 && line % 2 == 1,
         }
     }

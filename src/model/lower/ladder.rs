@@ -45,8 +45,8 @@ struct Lowering {
     is_transition: bool,
 }
 
-/// One connected network while it is executed.
-struct Network {
+/// A rung while it is executed. Its connected networks share no wire but the rail.
+struct Run {
     /// Whether each wire has power.
     power: Vec<ExprId>,
     /// Conditions of contacts and comparisons, by element.
@@ -73,8 +73,10 @@ impl Lowering {
         let networks = grid.networks();
         let mut contacts = Vec::new();
         let mut coils = Vec::new();
+        let mut run = Run { power: vec![Exprs::FALSE; grid.wire_count()], tests: FxHashMap::default() };
+        run.power[Grid::index(Wire::RAIL)] = Exprs::TRUE;
         for (number, elements) in networks.iter().enumerate() {
-            self.network(&grid, elements, number, &mut contacts, &mut coils);
+            self.network(&grid, elements, number, &mut run, &mut contacts, &mut coils);
         }
         self.read_before_driven(&contacts, &coils);
         for it in &grid.placed {
@@ -91,32 +93,31 @@ impl Lowering {
         grid: &Grid<'_>,
         elements: &[usize],
         number: usize,
+        run: &mut Run,
         contacts: &mut Vec<Use>,
         coils: &mut Vec<Use>,
     ) {
-        let mut network = Network { power: vec![Exprs::FALSE; grid.wire_count()], tests: FxHashMap::default() };
-        network.power[Grid::index(Wire::RAIL)] = Exprs::TRUE;
         for &index in elements {
             let it = &grid.placed[index];
             if !matches!(it.element, Some(Element::HLink | Element::ShortCircuit)) {
                 self.pl7.b.instruction(it.range());
             }
             if let Some(value) = self.test(it, |object, range| contacts.push(Use { object, network: number, range })) {
-                network.tests.insert(index, value);
+                run.tests.insert(index, value);
             }
         }
         for &index in elements {
-            self.conduct(grid, index, &mut network);
+            self.conduct(grid, index, run);
         }
         for &index in elements {
             let it = &grid.placed[index];
-            if let Some((object, range)) = self.coil(it, network.at(it)) {
+            if let Some((object, range)) = self.coil(it, run.at(it)) {
                 coils.push(Use { object, network: number, range });
             }
         }
         for &index in elements {
             let it = &grid.placed[index];
-            self.leave(it, network.at(it));
+            self.leave(it, run.at(it));
         }
     }
 
@@ -177,12 +178,12 @@ impl Lowering {
     }
 
     /// Lets power through an element, and executes blocks, operations and calls.
-    fn conduct(&mut self, grid: &Grid<'_>, index: usize, network: &mut Network) {
+    fn conduct(&mut self, grid: &Grid<'_>, index: usize, run: &mut Run) {
         let it = &grid.placed[index];
-        let before = network.at(it);
+        let before = run.at(it);
         let through = match it.element {
             Some(Element::HLink | Element::ShortCircuit) => before,
-            Some(Element::Block) => return self.block(grid, it, network),
+            Some(Element::Block) => return self.block(grid, it, run),
             Some(Element::Operate) => return self.operate(it, before),
             Some(Element::Call) => {
                 if let Some((token, number)) = it.cell.subroutine() {
@@ -192,17 +193,17 @@ impl Lowering {
             }
             Some(element) if element.is_action() => return,
             _ => {
-                let value = network.tests.get(&index).copied();
+                let value = run.tests.get(&index).copied();
                 let value = value.unwrap_or_else(|| self.pl7.b.exprs().opaque());
                 self.pl7.b.exprs().and(before, value)
             }
         };
         for &wire in &it.outputs {
-            network.join(&mut self.pl7, wire, through);
+            run.join(&mut self.pl7, wire, through);
         }
     }
 
-    fn block(&mut self, grid: &Grid<'_>, it: &Placed<'_>, network: &mut Network) {
+    fn block(&mut self, grid: &Grid<'_>, it: &Placed<'_>, run: &mut Run) {
         let place = it.cell.operand().and_then(|it| self.pl7.place(&it));
         let is_block = place.is_some_and(|(object, _)| self.pl7.b.model.object(object).class == Class::Block);
         match (place, block_of(it.cell)) {
@@ -212,7 +213,7 @@ impl Lowering {
                     // An input without a wire is 0 (PL7:2813).
                     if grid.is_fed(wire) {
                         is_driven = true;
-                        let when = network.power[Grid::index(wire)];
+                        let when = run.power[Grid::index(wire)];
                         self.pl7.b.drive(object, pl7::pin(block.letters, name), when, None, at, it.range());
                     }
                 }
@@ -224,7 +225,7 @@ impl Lowering {
                         Some(name) => self.output(object, name, at),
                         None => Exprs::FALSE,
                     };
-                    network.join(&mut self.pl7, wire, value);
+                    run.join(&mut self.pl7, wire, value);
                 }
             }
             (place, _) => {
@@ -240,7 +241,7 @@ impl Lowering {
                 }
                 for &wire in it.outputs.iter().filter(|it| grid.is_used(**it)) {
                     let value = self.pl7.b.exprs().opaque();
-                    network.join(&mut self.pl7, wire, value);
+                    run.join(&mut self.pl7, wire, value);
                 }
             }
         }
@@ -386,7 +387,7 @@ impl Lowering {
     }
 }
 
-impl Network {
+impl Run {
     /// Power at the left edge of an element.
     fn at(&self, it: &Placed<'_>) -> ExprId {
         it.inputs.first().map_or(Exprs::FALSE, |it| self.power[Grid::index(*it)])
