@@ -66,8 +66,14 @@ fn examples(rule: &Rule) -> Vec<Example> {
             };
             assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
             let config = std::mem::take(&mut next_config);
-            open =
-                Some(Example { line: line + 1, dialect, bad: verdict == "bad", controller, config, text: String::new() });
+            open = Some(Example {
+                line: line + 1,
+                dialect,
+                bad: verdict == "bad",
+                controller,
+                config,
+                text: String::new(),
+            });
         }
     }
     assert!(open.is_none(), "{}: an example is not closed", rule.name);

@@ -18,7 +18,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         exchanged.extend(first.into_iter().flat_map(|it| Group::all_of(uses.object).map(|g| (g, uses.object, *it))));
     }
     for uses in program.objects.iter().filter(|it| it.object.ty == Type::Bool) {
-        let in_task = |it: &&GlobalUse<'_>| program.tasks(it.unit).any(|it| matches!(it, Context::Cyclic | Context::Fast));
+        let in_task =
+            |it: &&GlobalUse<'_>| program.tasks(it.unit).any(|it| matches!(it, Context::Cyclic | Context::Fast));
         let Some(edge) = uses.with_mode(Mode::is_edge).find(in_task) else { continue };
         let (name, group) = (&uses.object.text, Group::all_of(uses.object).next());
         let same = |it: &&(Group<'_>, &Object, GlobalUse<'_>)| Some(it.0) == group;
@@ -28,7 +29,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             let task = event(it).map(|it| it.name(program.family)).unwrap_or_default();
             let (first, last) = group.channels();
             let message = format!("the edge of `{name}` is tested, which {task} exchanges, too");
-            let finding = sink.report(edge.site(), message).related(it.site(), format!("`{}` is used here", other.text));
+            let finding =
+                sink.report(edge.site(), message).related(it.site(), format!("`{}` is used here", other.text));
             if !other.footprint.overlaps(&uses.object.footprint) {
                 finding.note(format!("channels {first} to {last} of the module are exchanged together (PL7:2502)"));
             }
@@ -41,6 +43,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 
 /// The event of the program that the channel of an input raises, which has it read (PL7:2468).
 fn raised_by(cx: &ProgramCx<'_>, input: &Object) -> Option<u16> {
+    if cx.settings.events().is_empty() {
+        return None;
+    }
     let events = (0..).take(cx.program.units.len()).flat_map(|it| cx.program.tasks(it)).filter_map(|it| match it {
         Context::Event(number) => Some(number),
         _ => None,

@@ -10,9 +10,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         let Some((edge, write)) = edges::permanent(cx.program, uses, cx.neighbours(at)) else { continue };
         let name = &uses.object.text;
-        let mut finding =
-            sink.report(edge.site(), format!("the edge of `{name}` stays while the bit is not written"))
-                .related(write.site(), "not written in every scan");
+        let mut finding = sink
+            .report(edge.site(), format!("the edge of `{name}` stays while the bit is not written"))
+            .related(write.site(), "not written in every scan");
         if let Some(call) = cx.program.conditional_call(write.unit).filter(|_| cx.program.is_passed_by(write.unit)) {
             finding = finding.related(call.site(), "this call depends on a condition");
         }

@@ -35,7 +35,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         }
     }
     for call in cx.nodes(SyntaxKind::CallExpr).filter_map(CallExpr::cast) {
-        let tables: Vec<Type> = call.arguments().into_iter().flatten().filter_map(|it| cx.kinds().type_of(it)).collect();
+        let tables: Vec<Type> =
+            call.arguments().into_iter().flatten().filter_map(|it| cx.kinds().type_of(it)).collect();
         if let ([a, b], true) = (tables.as_slice(), call.function().is_some_and(takes_a_pair)) {
             pair(cx, sink, call.syntax().text_range(), *a, *b);
         }

@@ -48,7 +48,6 @@ fn count(sink: &mut Sink<'_, TextRange>, name: SyntaxToken<'_>, function: &Funct
     if given != wanted {
         let plural = if wanted == 1 { "" } else { "s" };
         let message = format!("`{}` takes {wanted} argument{plural}, and is given {given}", function.name);
-        sink.report(name.text_range(), message)
-            .note(format!("the function is given in PL7:{}", function.line));
+        sink.report(name.text_range(), message).note(format!("the function is given in PL7:{}", function.line));
     }
 }

@@ -73,5 +73,6 @@ fn is_drive(mode: Mode, holds: bool) -> bool {
 
 /// Whether what is read of an object comes out of the block, and was not put into it.
 fn is_result(object: &Object) -> bool {
-    matches!(object.class, Class::Timer | Class::Counter | Class::BlockBit | Class::BlockWord) && !pl7::is_preset(object)
+    matches!(object.class, Class::Timer | Class::Counter | Class::BlockBit | Class::BlockWord)
+        && !pl7::is_preset(object)
 }

@@ -18,10 +18,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let covers = it.object.indexed || (place.start <= OVERFLOW && OVERFLOW < place.end());
         place.area == Area::SystemBits && covers && it.is_read()
     });
-    let mut computing: Vec<Site> = (0..)
-        .zip(&program.units)
-        .filter_map(|(unit, facts)| Some(Site { unit, anchor: facts.computes? }))
-        .collect();
+    let mut computing: Vec<Site> =
+        (0..).zip(&program.units).filter_map(|(unit, facts)| Some(Site { unit, anchor: facts.computes? })).collect();
     computing.sort_by_key(|it| (program.order[it.unit as usize], it.anchor));
     let Some((&first, others)) = computing.split_first().filter(|_| !is_asked) else { return };
     let more = others.iter().map(|it| (*it, format!("{} computes, too", program.entity(it.unit))));

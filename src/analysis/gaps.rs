@@ -54,8 +54,7 @@ pub fn writes(model: &UnitModel) -> FxHashMap<u32, Writes> {
         if access.path == Exprs::FALSE || !object.is_fixed() {
             continue;
         }
-        let writes =
-            found.entry(access.object.0).or_insert_with(|| Writes { places: Vec::new(), is_open: false });
+        let writes = found.entry(access.object.0).or_insert_with(|| Writes { places: Vec::new(), is_open: false });
         writes.is_open |= statement.is_some_and(|it| it.in_loop.is_some()) || writes.places.len() >= MAX_WRITES;
         if !writes.is_open {
             writes.places.push([access.path, when]);

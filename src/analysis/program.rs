@@ -141,6 +141,8 @@ pub struct ProgramIndex<'a> {
     pub complete: bool,
     /// Some of the program was not read or not understood.
     pub partial: bool,
+    /// Areas in which an indexed object is written.
+    indexed: FxHashSet<&'a Area>,
     exclusive: FxHashSet<(u32, u32, u32)>,
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
@@ -175,6 +177,8 @@ impl<'a> ProgramIndex<'a> {
             .flat_map(|(unit, facts)| facts.exclusive_uses.iter().map(move |&(a, b)| (unit, a, b)))
             .collect();
         let objects = collect(&units, &order, &calls);
+        let indexed = objects.iter().filter(|it| it.object.indexed && it.is_written());
+        let indexed = indexed.map(|it| &it.object.footprint.area).collect();
         let partial = units.iter().any(|it| it.has_gaps);
         Self {
             family,
@@ -188,6 +192,7 @@ impl<'a> ProgramIndex<'a> {
             order,
             complete,
             partial,
+            indexed,
             exclusive,
             exclusive_uses,
             names,
@@ -258,7 +263,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether an indexed object, which may be any of its area, is written in an area.
     pub fn is_written_by_index(&self, area: &Area) -> bool {
-        self.objects.iter().any(|it| it.object.indexed && it.object.footprint.area == *area && it.is_written())
+        self.indexed.contains(area)
     }
 
     /// Whether two calls can both happen in the same scan of the same context.

@@ -357,8 +357,7 @@ fn real(text: &str, dialect: &Dialect) -> Result<Value, LiteralError> {
         } else {
             format!("its magnitude lies below {greatest:e}")
         };
-        let message =
-            format!("`{}` is beyond the range of a real: {range} ({})", shown(text), dialect.real_source);
+        let message = format!("`{}` is beyond the range of a real: {range} ({})", shown(text), dialect.real_source);
         return Err(LiteralError { is_real_range: true, ..error(message) });
     }
     Ok(Value::Real(value))

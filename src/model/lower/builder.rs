@@ -166,7 +166,16 @@ impl Builder {
     fn access(&mut self, object: ObjectId, mode: Mode, range: TextRange, version: u32, exposed: bool) -> u32 {
         let anchor = self.anchor(range);
         let statement = index(self.model.statements.len());
-        self.model.accesses.push(Access { object, mode, statement, anchor, path: self.path, version, exposed, parameter: None });
+        self.model.accesses.push(Access {
+            object,
+            mode,
+            statement,
+            anchor,
+            path: self.path,
+            version,
+            exposed,
+            parameter: None,
+        });
         index(self.model.accesses.len() - 1)
     }
 
