@@ -649,6 +649,21 @@ mod tests {
     }
 
     #[test]
+    fn tasks_interrupt_one_another() {
+        let units = units(&["MAST - MAIN", "FAST - MAIN", "EVT0", "EVT1", "EVT2", "MAST - SR1"]);
+        let program = ProgramIndex::new(Family::Pl7, units.iter().collect());
+        assert!(program.in_other_tasks(0, 1) && program.in_other_tasks(1, 3) && program.in_other_tasks(2, 3));
+        assert!(!program.in_other_tasks(3, 4), "events of one priority");
+        assert!(!program.in_other_tasks(1, 5), "nothing calls the subroutine");
+        assert_eq!((program.task_names(1), program.task_names(5)), ("FAST".to_owned(), String::new()));
+        let obs: Vec<UnitFacts> = self::units(&["OB1", "OB35", "OB100", "OB82", "OB86"]);
+        let program = ProgramIndex::new(Family::Step7, obs.iter().collect());
+        assert!(program.in_other_tasks(0, 1) && program.in_other_tasks(1, 3));
+        assert!(!program.in_other_tasks(0, 2), "start-up is over when the cycle begins");
+        assert!(!program.in_other_tasks(3, 4), "errors have one priority");
+    }
+
+    #[test]
     fn parts_of_pl7_2_run_in_their_own_order() {
         let units = units(&["PL7-2 FAST", "PL7-2 POST", "PL7-2 SEQ - X1", "PL7-2 PRL", "PL7-2 SEQ"]);
         let order = |family| ProgramIndex::new(family, units.iter().collect()).order;
