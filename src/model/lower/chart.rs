@@ -652,6 +652,36 @@ mod tests {
     }
 
     #[test]
+    fn ladder_in_a_chart_is_code_like_any_other() {
+        let text = format!(
+            "PAGE 0\nSTEP 3 AT (C 0,L 1) :\nACTION (N1,LD) : RUNG\nOPEN_CONTACT(%I1.0),H_LINK(9),COIL(%Q2.0);\nEND_RUNG \
+             END_ACTION\nACTION (P1,LD) : RUNG\nH_LINK(10),SET_COIL(%M5);\nEND_RUNG END_ACTION\n{STEP}\
+             TRANSITION (LD) AT (C 0,L 2) : RUNG\nOPEN_CONTACT(%M7),COMPARE %MW0>5 END_BLOCK,H_LINK(7),HASH_COIL;\nEND_RUNG \
+             END_TRANSITION\nEND_PAGE\n"
+        );
+        let model = page(&text);
+        assert_eq!(writes(&model), ["^%X3: %M5 set", "%X3: %Q2.0 assigned"]);
+        let Receptivity::Value(value) = chart(&model).transitions[0].receptivity else { panic!("a value") };
+        assert_eq!(show(&model, value), "(%M7 & (%MW0 > 5))");
+        assert!(!model.has_gaps && model.oddities.is_empty());
+        // A `(#)` in an action, and a block in a transition.
+        let flaws = |what: &str| {
+            let it = page(&format!("PAGE 0\nSTEP 3 AT (C 0,L 1) :\n{what}END_PAGE\n"));
+            it.oddities.iter().map(|it| it.kind.clone()).collect::<Vec<_>>()
+        };
+        let hash = "RUNG\nH_LINK(10),HASH_COIL;\nEND_RUNG";
+        let block = "RUNG\nH_LINK,BLOCK(%TM0),H_LINK(7),HASH_COIL;\nEND_RUNG";
+        assert_eq!(
+            flaws(&format!("ACTION (N1,LD) : {hash} END_ACTION\n{STEP}")),
+            [OddityKind::Ladder(crate::model::ladder::Flaw::HashOutsideTransition)]
+        );
+        assert_eq!(
+            flaws(&format!("{STEP}TRANSITION (LD) AT (C 0,L 2) : {block} END_TRANSITION\n")),
+            [OddityKind::Ladder(crate::model::ladder::Flaw::ElementInTransition)]
+        );
+    }
+
+    #[test]
     fn labels_belong_to_their_action() {
         let action = "ACTION (P1,ST) : (*PHRASE*) %L1: IF %M0 THEN JUMP %L2; END_IF; (*END_PHRASE*)\n\
                       (*PHRASE*) %L2: INC %MW0; (*END_PHRASE*) END_ACTION\n";
@@ -704,6 +734,7 @@ mod tests {
         let heading = "MAST - P - CHART - PAGE 0 %X1 P1";
         assert_eq!(path(heading, "! %M0 := TRUE;", Language::Pl7St), "^%X1: %M0 assigned");
         assert_eq!(path(heading, "! LD %M1\nST %M0", Language::Pl7Il), "^%X1: %M0 assigned");
+        assert_eq!(path(heading, "RUNG\nH_LINK(10),COIL(%M0);\nEND_RUNG", Language::Pl7Ld), "^%X1: %M0 assigned");
         assert_eq!(
             path("MAST - P - MACRO2 - PAGE 0 %X2.1 N1", "! %M0 := TRUE;", Language::Pl7St),
             "%X2.1: %M0 assigned"
