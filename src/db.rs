@@ -18,10 +18,12 @@ use smol_str::SmolStr;
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::ProgramIndex;
+use crate::analysis::symbols::{self, SymbolTable};
 use crate::lint::settings::{ProgramScope, Settings};
 use crate::lint::suppress::{Code, Comment, Suppressions};
 use crate::lint::{
-    Check, Diagnostic, FileCx, Finding, Location, Outcome, ProgramCx, Rule, SourceView, UnitCx, Unread, UnreadReason,
+    Check, Diagnostic, FileCx, Finding, Location, MadeOf, Outcome, ProgramCx, Rule, SourceView, UnitCx, Unread,
+    UnreadReason,
 };
 use crate::model::entity::{Entity, Family};
 use crate::model::lower;
@@ -29,8 +31,10 @@ use crate::source::decode::{Encoding, SourceText};
 use crate::source::detect::{self, Detected, Dialect, FileHint};
 use crate::source::entity_from_address;
 use crate::source::line_index::LineIndex;
-use crate::source::split::{self, SplitHint};
+use crate::source::split::{self, SplitHint, UnitSpan};
+use crate::source::stx;
 use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
+use crate::target::Target;
 
 /// A file as it was read.
 #[salsa::input(debug)]
@@ -42,6 +46,9 @@ pub struct SourceFile {
     pub text: Arc<str>,
     #[returns(copy)]
     pub detected: Detected,
+    /// The units of the text, where an edit tells them from those before it.
+    #[returns(ref)]
+    known_spans: Option<Arc<(SplitHint, Arc<[UnitSpan]>)>>,
 }
 
 /// The one project: all files of a run, and what they are checked against.
@@ -89,19 +96,27 @@ pub struct Unit<'db> {
 #[salsa::tracked(returns(deref), no_eq)]
 pub fn layout<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[(Unit<'db>, u32)]> {
     let text = file.text(db);
-    let project = db.project();
-    let settings = project.settings(db);
-    let entity = settings.entity_address(file.path(db)).and_then(entity_from_address);
-    let hint = SplitHint { entity, mnemonics: None };
-    let spans = split::split(text, file.detected(db), &hint);
-    spans
-        .into_iter()
-        .map(|span| {
-            let part: Arc<str> = text.get(std::ops::Range::<usize>::from(span.range)).unwrap_or_default().into();
-            let unit = Unit::new(db, file, span.key, part, span.language, span.entity, span.unsupported);
-            (unit, u32::from(span.range.start()))
-        })
-        .collect()
+    let units = spans(db, file).iter().map(|span| {
+        let part: Arc<str> = text.get(std::ops::Range::<usize>::from(span.range)).unwrap_or_default().into();
+        let unit = Unit::new(db, file, span.key.clone(), part, span.language, span.entity.clone(), span.unsupported);
+        (unit, u32::from(span.range.start()))
+    });
+    units.collect()
+}
+
+/// How the text of a file is cut into units.
+#[salsa::tracked(no_eq)]
+fn spans(db: &dyn Db, file: SourceFile) -> Arc<[UnitSpan]> {
+    let hint = split_hint(db, file);
+    match file.known_spans(db).as_deref() {
+        Some((of, known)) if *of == hint => known.clone(),
+        _ => split::split(file.text(db), file.detected(db), &hint).into(),
+    }
+}
+
+fn split_hint(db: &dyn Db, file: SourceFile) -> SplitHint {
+    let entity = db.project().settings(db).entity_address(file.path(db)).and_then(entity_from_address);
+    SplitHint { entity, mnemonics: None }
 }
 
 /// Units of a file, without their places.
@@ -145,15 +160,18 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let mut facts = UnitFacts::new(&model);
     facts.has_gaps |=
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
+    if let Some(chart) = &mut facts.chart {
+        chart.has_gaps = !tree.errors().is_empty();
+    }
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
-    let target = settings.target(family);
+    let target = settings.target_or(family, *named_controller(db, unit.file(db)));
     let cx = UnitCx::new(&model, &tree, text, settings, &target);
     let findings = run_rules(settings, |rule, findings| match rule.check {
         Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
         Check::Unit(_) | Check::Program(_) | Check::File(_) => {}
     });
-    let not_understood = if unit.unsupported(db).is_some() { text.len() } else { not_understood(&tree) };
+    let not_understood = if unit.unsupported(db).is_some() { text.len() } else { not_understood(language, &tree) };
     UnitAnalysis { facts: Arc::new(facts), findings, anchors: model.anchors.into_boxed_slice(), not_understood }
 }
 
@@ -191,6 +209,13 @@ fn named_entities(db: &dyn Db, file: SourceFile) -> Box<[Entity]> {
     entities.filter(|it| **it != Entity::Container).cloned().collect()
 }
 
+/// Whether a file declares variables beside or without code: it belongs to the code around it.
+#[salsa::tracked]
+fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
+    let mut declaring = units(db, file).iter().filter(|it| it.language(db) == Language::Exchange);
+    declaring.any(|&it| !facts(db, it).symbols.is_empty())
+}
+
 /// The programs of the project.
 ///
 /// Files of one folder and vendor are one program, unless two of them define the same entity (two variants of one
@@ -205,7 +230,10 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     for &file in project.files(db) {
         let Some(family) = family(file.detected(db)) else { continue };
         let entities = named_entities(db, file);
-        if scope == ProgramScope::File || entities.is_empty() || entities.contains(&Entity::Listing) {
+        let is_part = !entities.is_empty() || *declares_variables(db, file);
+        // A project is a whole program, whatever exports of it lie beside it.
+        let is_project = file.detected(db) == Detected::Stx;
+        if scope == ProgramScope::File || is_project || !is_part || entities.contains(&Entity::Listing) {
             alone.push((family, file));
             continue;
         }
@@ -244,7 +272,7 @@ fn folder_of(path: &str) -> &str {
 /// The vendor family of a file that is linted.
 pub fn family(detected: Detected) -> Option<Family> {
     match detected {
-        Detected::Exchange | Detected::Pasted(_) => Some(Family::Pl7),
+        Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
         Detected::Pl72 => Some(Family::Pl72),
         Detected::Step7 => Some(Family::Step7),
         _ => None,
@@ -263,22 +291,34 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
     program.files(db).iter().flat_map(|&file| units(db, file).iter().copied()).collect()
 }
 
+/// What the symbols of a program name. It has no places.
+#[salsa::tracked]
+pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
+    let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
+    SymbolTable::new(declaring.map(|&unit| &**facts(db, unit)))
+}
+
 /// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].
 #[salsa::tracked]
 pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
     let project = db.project();
     let settings = project.settings(db);
-    let target = settings.target(program.family(db));
-    let facts = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
-    let mut index = ProgramIndex::new(program.family(db), facts);
+    let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
+    let target = settings.target_or(program.family(db), named);
+    let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
+    let facts = symbols::resolve(symbol_table(db, program), &facts);
+    let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
     let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
     if program.files(db).iter().any(|it| project.partly_read(db).contains(&folder(it))) {
         index.leave_incomplete();
     }
     let cx = ProgramCx::new(&index, settings, &target);
+    let family = program.family(db);
     run_rules(settings, |rule, findings| match rule.check {
-        Check::Program(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
-        Check::Unit(_) | Check::File(_) => {}
+        Check::Program(check) if rule.is_for_family(family) => {
+            crate::lint::run(rule, findings, |sink| check(&cx, sink));
+        }
+        Check::Program(_) | Check::Unit(_) | Check::File(_) => {}
     })
 }
 
@@ -332,6 +372,13 @@ fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec
     ran
 }
 
+/// The controller that a project is made for.
+#[salsa::tracked]
+fn named_controller(db: &dyn Db, file: SourceFile) -> Option<Target> {
+    let name = (file.detected(db) == Detected::Stx).then(|| stx::controller(file.text(db)))??;
+    Target::of_project(name)
+}
+
 /// All findings of a file, sorted by place and code; suppressed ones are marked.
 #[salsa::tracked(returns(deref))]
 pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
@@ -352,6 +399,13 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
             found.extend(finding.clone().map(|site| places.of(site)));
         }
+        let table = symbol_table(db, program);
+        if !table.is_empty() {
+            found.iter_mut().for_each(|it| it.message = table.annotate(&it.message));
+        }
+    }
+    if file.detected(db) == Detected::Stx {
+        found.iter_mut().for_each(|it| qualify(db, it, layout));
     }
     found.retain_mut(|it| match selection.severity(it.rule, it.severity) {
         Some(severity) => {
@@ -372,7 +426,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         .collect();
     let leftovers =
         suppressions.leftovers(crate::lint::rules(), |rule| selection.severity(rule, rule.severity).is_some());
-    let cx = FileCx { leftovers: &leftovers };
+    let cx = FileCx { text: file.text(db), leftovers: &leftovers };
     let ran = run_rules(settings, |rule, findings| match rule.check {
         Check::File(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
         Check::Unit(_) | Check::Program(_) => {}
@@ -418,10 +472,22 @@ impl<'db> Places<'db> {
     }
 }
 
-fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
+/// Says of a finding in a project what it rests on. Nobody can change the text.
+fn qualify(db: &dyn Db, finding: &mut Finding<FilePlace>, layout: &[(Unit<'_>, u32)]) {
+    finding.fixes.clear();
+    if unit_at(layout, finding.place.range.start()).is_some_and(|it| it.language(db) == Language::Pl7Xref) {
+        let note = "known by the project's cross-reference, which tells neither order nor conditions";
+        finding.notes.push(note.to_owned());
+    }
+}
+
+fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'db>> {
     let after = layout.partition_point(|it| it.1 <= u32::from(at));
-    let unit = after.checked_sub(1).and_then(|it| layout.get(it));
-    unit.map_or_else(String::new, |it| it.0.entity(db).to_string())
+    Some(layout.get(after.checked_sub(1)?)?.0)
+}
+
+fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
+    unit_at(layout, at).map_or_else(String::new, |it| it.entity(db).to_string())
 }
 
 /// Suppression comments of a file.
@@ -495,7 +561,7 @@ impl RootDatabase {
     /// Adds files, in the order given.
     pub fn set_files(&mut self, inputs: impl IntoIterator<Item = Input>) -> Vec<SourceFile> {
         let files: Vec<SourceFile> =
-            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text, it.detected)).collect();
+            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text, it.detected, None)).collect();
         self.project().set_files(self).to(files.clone());
         files
     }
@@ -503,9 +569,14 @@ impl RootDatabase {
     /// Gives a file another text; nothing happens when it is the same.
     pub fn set_text(&mut self, file: SourceFile, text: impl Into<Arc<str>>) {
         let text = text.into();
-        if **file.text(self) != *text {
-            file.set_text(self).to(text);
+        if **file.text(self) == *text {
+            return;
         }
+        let (old, hint) = (file.text(self), split_hint(self, file));
+        let known = split::resplit(old, spans(self, file), &text, file.detected(self), &hint);
+        let known = known.map(|it| Arc::new((hint, it.into())));
+        file.set_known_spans(self).to(known);
+        file.set_text(self).to(text);
     }
 }
 
@@ -607,7 +678,12 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             dialect: dialect_name(&db, file),
             entities: 0,
             not_understood: 0,
+            made_of: None,
         };
+        if file.detected(&db) == Detected::Stx {
+            let cross_reference = units(&db, file).iter().any(|it| it.language(&db) == Language::Pl7Xref);
+            view.made_of = Some(MadeOf { cross_reference });
+        }
         for &unit in units(&db, file) {
             if *unit.entity(&db) != Entity::Container {
                 view.entities += 1;
@@ -637,15 +713,17 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
 /// Families of files for which no controller is configured, though an active rule asks for one.
 fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Family> {
     let asks = |family: Family| active.iter().any(|it| it.by_controller && it.is_for_family(family));
-    let is_read = |wanted: Family| inputs.iter().any(|it| family(it.detected) == Some(wanted));
+    let is_named = |it: &Input| it.detected == Detected::Stx && stx::controller(&it.source.text).is_some();
+    let is_read = |wanted: Family| inputs.iter().any(|it| family(it.detected) == Some(wanted) && !is_named(it));
     let mut families = vec![Family::Pl7, Family::Step7];
     families.retain(|&it| settings.target(it).controller().is_none() && asks(it) && is_read(it));
     families
 }
 
 /// Bytes of tokens that the syntax could not place.
-fn not_understood(parse: &Parse) -> usize {
-    if parse.errors().is_empty() {
+fn not_understood(language: Language, parse: &Parse) -> usize {
+    // What is unknown between the programs of an exchange file, or in a vendor's table, is no mistake.
+    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Pl7Xref) {
         return 0;
     }
     let root = parse.syntax();
@@ -664,11 +742,15 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
+        (Detected::Stx, _) => "PL7 project, by its cross-reference".to_owned(),
         (Detected::Pl72, _) => "PL7-2".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::German))) => "STEP 7 AWL, German mnemonics".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
         (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),
         (_, Some(Language::Pl7St)) => "PL7 structured text".to_owned(),
+        (_, Some(Language::Pl7Gr7)) => "PL7 Grafcet".to_owned(),
+        (_, Some(Language::Sfc)) => "textual SFC".to_owned(),
+        (_, Some(Language::Pl7Ld)) => "PL7 ladder".to_owned(),
         _ => "PLC text".to_owned(),
     }
 }

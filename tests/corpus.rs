@@ -17,17 +17,7 @@ const CLEAN: [&str; 2] = ["programs/four-tunnel", "programs/station-pompage"];
 
 /// Listings of the manual that neither name nor content shows to be PL7 for certain: a sentence on one line, code of a
 /// DFB that names no object, an expression alone. They are read when the user says what they are.
-const UNRECOGNISED: [&str; 9] = [
-    "documents/pl7-manual/comparaison-lue.st",
-    "documents/pl7-manual/comparaison.st",
-    "documents/pl7-manual/dfb-boucles.st",
-    "documents/pl7-manual/dfb-compteur.st",
-    "documents/pl7-manual/parentheses.st",
-    "documents/pl7-manual/phrase.st",
-    "documents/pl7-manual/priorite-rem.st",
-    "documents/pl7-manual/priorite.st",
-    "documents/pl7-manual/receptivite.st",
-];
+const UNRECOGNISED: [&str; 2] = ["documents/pl7-manual/dfb-boucles.st", "documents/pl7-manual/dfb-compteur.st"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus")

@@ -12,7 +12,16 @@ use plclint::source::split::{self, SplitHint};
 use plclint::syntax;
 use proptest::prelude::*;
 
-const DIALECTS: [Dialect; 5] = [Dialect::Auto, Dialect::Step7, Dialect::Pl7, Dialect::Pl7Il, Dialect::Pl7St];
+const DIALECTS: [Dialect; 8] = [
+    Dialect::Auto,
+    Dialect::Step7,
+    Dialect::Pl7,
+    Dialect::Pl7Il,
+    Dialect::Pl7St,
+    Dialect::Pl7Ld,
+    Dialect::Pl7Gr7,
+    Dialect::Sfc,
+];
 
 fn check(bytes: &[u8], dialect: Dialect, encoding: Option<Encoding>) -> Outcome {
     let hint = FileHint { path: Some(Path::new("hostile.awl")), explicit: true, dialect };
@@ -44,6 +53,18 @@ const AWL: &str = "FUNCTION FC 1 : VOID\nVAR_TEMP\n a : INT;\nEND_VAR\nBEGIN\nNE
 const ST: &str = "ST : MAST - SR1\n! (*x*) %L1: IF RE %M0 AND (%MW2[%MW3]:X4 OR %I1.0) THEN %MW4 := SQRT(%MW5) + 16#FF; \
                   ELSIF %X1.T > 10 THEN FOR %MW1 := 0 TO 5 DO INC %MW2; EXIT; END_FOR; ELSE JUMP %L1; END_IF;\n";
 const IL: &str = "IL : MAST - SR2\n! %L2: LD %I1.0\n AND(N %M1\n OR([%MW0>5]\n )\n )\n MPS\n ST %Q2.0\n MPP\n [%MW1:=%MW2*3]\n JMPC %L2\n";
+
+const GR7: &str = "GR7 : MAST - P - CHART\nNB_PAGES = 8\nPAGE 0\nINITIAL_STEP 0 AT (C 4,L 3) :\nACTION (N1,ST) : (*PHRASE*) %L1: \
+                   IF %X0.T > 5 THEN JUMP %L1; END_IF; (*END_PHRASE*) END_ACTION\nACTION (P0,IL) : ! LD %I1.0 S %M5 END_ACTION\n\
+                   END_STEP\nTRANSITION (*go*) (ST) AT (C 4,L 4) : %M0 := %M1 END_TRANSITION\nT_S_OR_LINK FROM (C 4,L 4) TO \
+                   (C 4,L 3) := [H_LINK FROM (C 4,L 4) TO (C 5,L 4)]\nDEST_CONNECTOR 1 AT (C 4,L 5)\nEND_PAGE\nPAGE 1\n\
+                   SOURCE_CONNECTOR 0 AT (C 0,L 0)\nSTEP 1 AT (C 0,L 1) :\nACTION (P1,LD) : RUNG\nH_LINK(10),COIL(%M0);\nEND_RUNG \
+                   END_ACTION\nEND_STEP\nEND_PAGE\n";
+const SFC: &str = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); %Q2.1(S); END_STEP\nTRANSITION FROM X0 TO (X1,X2) := %I1.0; \
+                   END_TRANSITION\nACTION Fill : %Q2.0 := TRUE; END_ACTION\n";
+const LD: &str = "LD : MAST - SR3\nRUNG (*x*) %L3:\nOPEN_CONTACT(%I1.0),SHORT_CIRCUIT,BLOCK(%TM0),H_LINK(6),COIL(%Q2.0);\n\
+                  P_CONTACT(%M1),H_LINK,EMPTY_CELL(9);\nCOMPARE %MW0>5 END_BLOCK,H_LINK(5),OPERATE %MW1:=%MW2[%MW3] END_BLOCK;\n\
+                  EMPTY_LINE;\nEMPTY_CELL(2),V_LINK,BLOCK(%C8),H_LINK(4),JUMP_COIL(%L3);\nEND_RUNG\n";
 
 fn mutated(base: &'static str) -> impl Strategy<Value = Vec<u8>> {
     let edits = prop::collection::vec((any::<prop::sample::Index>(), 0_usize..6, any::<u8>()), 1..12);
@@ -87,7 +108,7 @@ proptest! {
 
     #[test]
     fn mutated_code(
-        bytes in prop_oneof![mutated(AWL), mutated(ST), mutated(IL)],
+        bytes in prop_oneof![mutated(AWL), mutated(ST), mutated(IL), mutated(LD), mutated(GR7), mutated(SFC)],
         dialect in prop::sample::select(&DIALECTS[..]),
         encoding in prop::sample::select(&[None, Some(Encoding::Windows1252), Some(Encoding::Utf8)][..]),
     ) {
@@ -106,10 +127,17 @@ fn deep_nesting_is_reported_and_survived() {
         format!("! %MW0 := {}1;", "1+".repeat(100_000)),
         format!("! %MW0{}", "[%MW0".repeat(100_000)),
         "(*".repeat(100_000),
+        format!("RUNG\nCOMPARE {}", "(".repeat(100_000)),
+        format!("RUNG\n{}", "OPERATE ".repeat(100_000)),
+        format!("RUNG\n{}", "X(".repeat(100_000)),
+        format!("RUNG\n{}COIL(%M0);END_RUNG", "OPEN_CONTACT(%M1),".repeat(20_000)),
         format!("DATA_BLOCK DB 1\n{}", "a : STRUCT\n".repeat(100_000)),
         format!("L MW {}", "[".repeat(100_000)),
+        format!("STEP 1 : ACTION (N1,ST) : {}", "IF %M0 THEN ".repeat(50_000)),
+        "STEP 1 : ACTION (N1,ST) : ".repeat(20_000),
+        "T_S_OR_LINK FROM (C 1,L 1) TO (C 1,L 1) := [".repeat(20_000),
     ] {
-        for dialect in [Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St] {
+        for dialect in [Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St, Dialect::Pl7Ld, Dialect::Pl7Gr7] {
             check(text.as_bytes(), dialect, None);
         }
     }
@@ -142,6 +170,8 @@ fn lines_of_ten_megabytes() {
         ("%M0 := %M1; ", syntax::Language::Pl7St),
         ("LD %M0 ST %M1 ", syntax::Language::Pl7Il),
         ("%MW0 = = ( ", syntax::Language::Pl7St),
+        ("RUNG COIL(%M0); ", syntax::Language::Pl7Ld),
+        ("COMPARE ( ,; ", syntax::Language::Pl7Ld),
     ] {
         let text = line.repeat(10_000_000 / line.len());
         assert!(syntax::parse(language, &text).syntax().text() == text.as_str());
@@ -152,7 +182,7 @@ fn lines_of_ten_megabytes() {
 /// catches is quadratic growth, which shows as a factor of 16 and more.
 #[test]
 fn time_is_linear() {
-    let shapes: [(&str, Dialect); 8] = [
+    let shapes: [(&str, Dialect); 18] = [
         ("U(\nU E 0.0\n)\n= A 4.0\n", Dialect::Step7),
         ("U E 0.0\nO M 1.0\n", Dialect::Step7),
         ("L MW 2\nL 5\n+I\nT MW 4\n", Dialect::Step7),
@@ -161,10 +191,24 @@ fn time_is_linear() {
         ("! %M0 := %M1 OR %M2;\n", Dialect::Pl7St),
         ("! IF %M0 THEN %MW1 := %MW2 + 1; END_IF;\n", Dialect::Pl7St),
         ("! LD %M0\nOR %M1\nST %M2\n", Dialect::Pl7Il),
+        ("STEP # AT (C #,L 1) : ACTION (N1,ST) : %L1: %M0 := %M1; JUMP %L1; END_ACTION END_STEP\n", Dialect::Pl7Gr7),
+        ("STEP # AT (C #,L 1) : END_STEP TRANSITION (ST) AT (C #,L 2) : %M# END_TRANSITION\n", Dialect::Pl7Gr7),
+        ("S_T_AND_LINK FROM (C #,L 1) TO (C 0,L 2)\nSTEP # AT (C #,L 1) : END_STEP\n", Dialect::Pl7Gr7),
+        ("SOURCE_CONNECTOR # AT (C #,L 0)\nDEST_CONNECTOR # AT (C #,L 3)\n", Dialect::Pl7Gr7),
+        ("STEP X# : A#(N); Fill(N); %M#(N); END_STEP\nACTION A# : %M0 := %M1; END_ACTION\n", Dialect::Sfc),
+        ("TRANSITION FROM X# TO (X1,X#) := %M0; END_TRANSITION\n", Dialect::Sfc),
+        ("RUNG\nOPEN_CONTACT(%M0),H_LINK(9),COIL(%M1);\nEND_RUNG\n", Dialect::Pl7Ld),
+        // All in one rung: networks apart, branches, one row.
+        ("OPEN_CONTACT(%M0),H_LINK(9),COIL(%M1);\n", Dialect::Pl7Ld),
+        ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,CLOSED_CONTACT(%M1),H_LINK(7),COIL(%M2);\n", Dialect::Pl7Ld),
+        ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,V_LINK,", Dialect::Pl7Ld),
     ];
     for (shape, dialect) in shapes {
         let time = |count: usize| {
-            let text = shape.repeat(count);
+            // `#` is the number of the repetition. What is no rung of its own is read as one.
+            let is_rung = dialect == Dialect::Pl7Ld && !shape.starts_with("RUNG");
+            let repeated: String = (0..count).map(|it| shape.replace('#', &it.to_string())).collect();
+            let text = format!("{}{repeated}", if is_rung { "RUNG\n" } else { "" });
             let mut best = Duration::MAX;
             for _ in 0..2 {
                 let start = Instant::now();

@@ -44,6 +44,27 @@ IL : MAST - SR4
       ST    %Q2.3
 ";
 
+const CHART: &str = "\
+[SOURCE_UNIT]
+NAME = 'Peinture_Chart' ADDRESS = MAST Chart PROG_LANGAGE = GR7
+PROGRAM MAST 'Chart'
+NB_PAGES = 8
+PAGE 0
+INITIAL_STEP 0 AT (C 0,L 1) :
+ACTION (N1,ST) : (*PHRASE*) %Q2.0 := %I1.0; (*END_PHRASE*) END_ACTION
+END_STEP
+TRANSITION (ST) AT (C 0,L 2) : (*PHRASE*) %I1.1 (*END_PHRASE*) END_TRANSITION
+DEST_CONNECTOR 1 AT (C 0,L 3)
+END_PAGE
+PAGE 1
+SOURCE_CONNECTOR 0 AT (C 0,L 0)
+STEP 1 AT (C 0,L 1) :
+END_STEP
+END_PAGE
+END_PROGRAM
+[EOF]
+";
+
 struct Setup {
     db: RootDatabase,
     events: EventLog,
@@ -135,6 +156,24 @@ fn an_edit_in_one_sentence_runs_that_entity_alone() {
 }
 
 #[test]
+fn an_edit_in_a_page_runs_that_page_alone() {
+    let mut setup = setup(&[("peinture.gr7", CHART, Dialect::Auto)]);
+    let count = |messages: &[String], code: &str| messages.iter().filter(|it| it.starts_with(code)).count();
+    assert_eq!(count(&setup.check(), "G005"), 0);
+    setup.edit(0, "STEP 1 AT (C 0,L 1)", "(* fill *)\nSTEP 1 AT (C 0,L 1)");
+    setup.check();
+    let executed = setup.executed();
+    assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
+    assert_eq!(Setup::count(&executed, "program_findings"), 0, "{executed:?}");
+    // A connector that leads elsewhere is a matter of both pages.
+    setup.edit(0, "SOURCE_CONNECTOR 0", "SOURCE_CONNECTOR 5");
+    let messages = setup.check();
+    let executed = setup.executed();
+    assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
+    assert_eq!(count(&messages, "G005"), 2, "{messages:?}");
+}
+
+#[test]
 fn another_file_of_the_program_is_not_read_again() {
     let caller = "ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\n CALL FC 1\n U E 5.0\n = A 9.0\nEND_ORGANIZATION_BLOCK\n";
     let called = "FUNCTION FC 1 : VOID\nBEGIN\nNETWORK\n U E 5.1\n = A 9.1\nEND_FUNCTION\n";
@@ -183,4 +222,27 @@ fn what_an_edit_leaves_is_what_a_fresh_run_finds() {
         assert_eq!(edited, messages);
         assert_eq!(fresh.project().files(&fresh).len(), 1);
     }
+}
+
+const VARIABLES: &str = "[DATA_UNIT]\nVAR_GLOBAL\nPump AT %Q2.0 : EBOOL (*left*);\nEND_VAR\n[EOF]\n";
+const USERS: &str = "ST : MAST - MAIN\n! Pump := %I1.0;\n! (* first *) SR1;\nST : MAST - SR1\n! %Q2.0 := %I1.1;\n";
+
+#[test]
+fn symbols_cross_files_without_their_places() {
+    let mut setup = setup(&[("plant.scy", VARIABLES, Dialect::Auto), ("plant.st", USERS, Dialect::Auto)]);
+    let clash = "W001 `Pump` (`%Q2.0`) is assigned in more than one place".to_owned();
+    assert!(setup.check().contains(&clash));
+    for (file, from, to) in [(1, "(* first *)", "(* the first *)"), (0, "(*left*)", "\n(*right*)")] {
+        setup.edit(file, from, to);
+        assert!(setup.check().contains(&clash));
+        let executed = setup.executed();
+        for query in ["program_findings", "symbol_table", "program_units", "programs"] {
+            assert_eq!(Setup::count(&executed, query), 0, "{query}: {executed:?}");
+        }
+    }
+    setup.edit(0, "%Q2.0", "%Q2.7");
+    assert!(!setup.check().contains(&clash));
+    let executed = setup.executed();
+    assert_eq!(Setup::count(&executed, "program_findings"), 1, "{executed:?}");
+    assert_eq!(Setup::count(&executed, "analysis"), 1, "the code is not looked at: {executed:?}");
 }

@@ -41,8 +41,9 @@ pub fn step7(bytes: usize, seed: u64) -> String {
     let mut text = String::with_capacity(bytes + 4096);
     let mut blocks = Vec::new();
     let mut number = 1;
+    let mut timers = 1..250;
     while text.len() + blocks.len() * 24 < bytes {
-        block(&mut text, &mut random, number);
+        block(&mut text, &mut random, &mut timers, number);
         blocks.push(number);
         number += 1;
     }
@@ -57,7 +58,8 @@ pub fn step7(bytes: usize, seed: u64) -> String {
     text
 }
 
-fn block(text: &mut String, random: &mut Random, number: u64) {
+/// `timers`: those that nothing starts yet.
+fn block(text: &mut String, random: &mut Random, timers: &mut impl Iterator<Item = u64>, number: u64) {
     let device = random.pick(DEVICES);
     writeln!(text, "FUNCTION FC {number} : VOID\nTITLE = {device} {number}\nAUTHOR : atelier\nVERSION : 1.0")
         .expect("a string");
@@ -137,14 +139,12 @@ fn block(text: &mut String, random: &mut Random, number: u64) {
                 .expect("a string");
             }
             8 => {
-                writeln!(
-                    text,
-                    "      U     {input};\n      L     S5T#{}S;\n      SE    T {};",
-                    random.below(90) + 1,
-                    random.below(250)
-                )
-                .expect("a string");
-                writeln!(text, "      U     T {};\n      =     {bit};", random.below(250)).expect("a string");
+                if let Some(timer) = timers.next() {
+                    let seconds = random.below(90) + 1;
+                    writeln!(text, "      U     {input};\n      L     S5T#{seconds}S;\n      SE    T {timer};")
+                        .expect("a string");
+                }
+                writeln!(text, "      U     T {};\n      =     {bit};", random.below(249) + 1).expect("a string");
             }
             _ => {
                 writeln!(text, "      L     DB{data}.DBW{};\n      T     #valeur;\n      L     #valeur;", network * 2)
@@ -166,9 +166,10 @@ pub fn pl7(bytes: usize, seed: u64) -> String {
     let mut random = Random::new(seed);
     let mut text = String::with_capacity(bytes + 4096);
     let mut number = 0;
+    let mut next_timer = 0;
     while text.len() < bytes {
         number += 1;
-        let mut section = Section::new(number);
+        let mut section = Section::new(number, next_timer);
         if random.one_in(3) {
             writeln!(text, "IL : MAST - Poste{number} - PRL").expect("a string");
             for _ in 0..20 + random.below(60) {
@@ -180,6 +181,7 @@ pub fn pl7(bytes: usize, seed: u64) -> String {
                 st_sentence(&mut text, &mut random, &mut section);
             }
         }
+        next_timer = section.next_timer;
     }
     text
 }
@@ -193,8 +195,8 @@ struct Section {
 }
 
 impl Section {
-    fn new(number: u64) -> Self {
-        Self { first: number * 100 % 65_000, next_bit: 0, next_timer: number * 3 % 250 }
+    fn new(number: u64, next_timer: u64) -> Self {
+        Self { first: number * 100 % 65_000, next_bit: 0, next_timer }
     }
 
     /// A word that is computed with, one of thirty.
@@ -228,9 +230,11 @@ impl Section {
         self.first + self.next_bit % 90
     }
 
-    fn timer(&mut self) -> u64 {
+    /// A timer that nothing starts yet, as long as there is one.
+    fn timer(&mut self) -> Option<u64> {
+        let timer = self.next_timer;
         self.next_timer += 1;
-        self.next_timer % 255
+        (timer < 255).then_some(timer)
     }
 }
 
@@ -288,8 +292,11 @@ fn il_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
         }
         2 => {
             let source = section.source(random);
-            writeln!(text, "      LD      [%MW{source}>{}]\n      IN      %TM{}", random.below(500), section.timer())
-                .expect("a string");
+            writeln!(text, "      LD      [%MW{source}>{}]", random.below(500)).expect("a string");
+            match section.timer() {
+                Some(timer) => writeln!(text, "      IN      %TM{timer}").expect("a string"),
+                None => writeln!(text, "      ST      %M{}", section.bit()).expect("a string"),
+            }
         }
         _ => {
             let (word, source) = (section.word(random), section.source(random));

@@ -20,7 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 }
 
 /// A bit whose every write lies in another task.
-fn written(cx: &ProgramCx<'_>, at: u32, uses: &ObjectUses<'_>, sink: &mut Sink<'_, Site>) {
+fn written<'a>(cx: &ProgramCx<'a>, at: u32, uses: &ObjectUses<'a>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
     let mut writes: Vec<GlobalUse<'_>> = uses.with_mode(Mode::writes).copied().collect();
     writes.extend(drives::covering(program, uses, cx.neighbours(at)));

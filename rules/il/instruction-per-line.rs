@@ -8,6 +8,10 @@ use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::Sentence;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    // The exchange form puts several on a line, and charts are written in it.
+    if cx.model.language.is_chart() {
+        return;
+    }
     for sentence in cx.nodes(SyntaxKind::Sentence) {
         let Some(sentence) = Sentence::cast(sentence) else { continue };
         if sentence.marker().is_some_and(|it| it.kind() == SyntaxKind::SentenceStart) {

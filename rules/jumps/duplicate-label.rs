@@ -6,11 +6,12 @@ use rustc_hash::FxHashMap;
 use crate::lint::{Sink, UnitCx};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let mut first: FxHashMap<&str, TextRange> = FxHashMap::default();
+    let mut first: FxHashMap<(u32, &str), TextRange> = FxHashMap::default();
     for label in &cx.model.labels {
-        match first.get(label.name.as_str()) {
+        let key = (label.part, label.name.as_str());
+        match first.get(&key) {
             None => {
-                first.insert(&label.name, label.range);
+                first.insert(key, label.range);
             }
             Some(&before) => {
                 sink.report(label.range, format!("label `{}` is defined a second time", label.text))

@@ -9,7 +9,8 @@ use crate::syntax::{Language, SyntaxKind};
 const MARK: usize = 2;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St) || !is_suspicious(cx.text) {
+    // What stands around the program in an exchange file is not published: its parentheses may mean anything.
+    if cx.model.language == Language::Exchange || !is_suspicious(cx.text) {
         return;
     }
     let mark = TextSize::of("(*");

@@ -5,20 +5,20 @@ use rowan::TextRange;
 use crate::lint::{Sink, UnitCx};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::unit::StatementKind;
-use crate::syntax::Language;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St) {
-        return;
-    }
     for statement in &cx.model.statements {
         // In a list a bit takes a result that was computed before: other writes may lie between.
         let (access, value) = match statement.kind {
             StatementKind::Store { access, value } => (access, value),
-            StatementKind::Assign { access, value } if cx.model.language == Language::Pl7St => (access, value),
+            StatementKind::Assign { access, value } => (access, value),
             _ => continue,
         };
-        let Some(target) = cx.model.accesses.get(access as usize).map(|it| it.object) else { continue };
+        let Some(access) = cx.model.accesses.get(access as usize) else { continue };
+        if matches!(statement.kind, StatementKind::Assign { .. }) && !cx.model.is_structured_text(access) {
+            continue;
+        }
+        let target = access.object;
         let object = cx.model.object(target);
         if object.is_bit() && !object.extracted {
             continue;

@@ -5,7 +5,6 @@ use crate::analysis::drives;
 use crate::analysis::program::GlobalUse;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::unit::{Mode, Pin};
-use crate::syntax::Language;
 
 const PINS: [Pin; 7] = [Pin::Start, Pin::Preset, Pin::Up, Pin::Down, Pin::Store, Pin::Retrieve, Pin::Advance];
 
@@ -26,6 +25,6 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 
 /// A statement of structured text that counts or stores is an event of its own: several of them add up.
 fn counts(cx: &ProgramCx<'_>, it: &GlobalUse<'_>, pin: Pin) -> bool {
-    let event = cx.program.units[it.unit as usize].language == Language::Pl7St;
+    let event = cx.program.units[it.unit as usize].is_structured_text(it.it.anchor);
     !event || matches!(pin, Pin::Start | Pin::Preset)
 }

@@ -7,8 +7,10 @@ use std::hash::BuildHasher as _;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
+use super::chart::ChartFacts;
 use super::{conditions, gaps};
 use crate::model::UnitModel;
+use crate::model::chart::CodeLanguage;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
@@ -61,7 +63,7 @@ pub struct FactObject {
 }
 
 impl FactObject {
-    fn new(object: &Object, number: bool, missed: Option<u32>) -> Self {
+    pub(super) fn new(object: &Object, number: bool, missed: Option<u32>) -> Self {
         let key = (&object.footprint, object.ty, object.indexed);
         let hash = if is_shared(object) { FxBuildHasher.hash_one(key) } else { 0 };
         Self { object: object.clone(), number, missed, hash }
@@ -99,6 +101,17 @@ pub struct FactDeclaration {
     pub ty: SmolStr,
 }
 
+/// A symbol that the unit declares for the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FactSymbol {
+    /// As written.
+    pub name: SmolStr,
+    /// `None` for an instance of a DFB.
+    pub object: Option<Object>,
+    /// Place of the name.
+    pub anchor: u32,
+}
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnitFacts {
     pub entity: Entity,
@@ -116,6 +129,7 @@ pub struct UnitFacts {
     pub instance_of: Option<BlockName>,
     /// Parameters and variables that the block declares.
     pub declared: Vec<FactDeclaration>,
+    pub symbols: Vec<FactSymbol>,
     pub instructions: u32,
     /// Anchor of the first operation of PL7 that can overflow.
     pub computes: Option<u32>,
@@ -124,6 +138,8 @@ pub struct UnitFacts {
     pub writes_indirectly: bool,
     /// The unit, or some of it, was not understood: what seems to be missing may stand there.
     pub has_gaps: bool,
+    /// What the unit holds of a chart.
+    pub chart: Option<Box<ChartFacts>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -133,6 +149,14 @@ const MAX_COMPARED: usize = 48;
 const MAX_COMPARISONS: u32 = 1000;
 
 impl UnitFacts {
+    /// Whether a place is one of structured text.
+    pub fn is_structured_text(&self, anchor: u32) -> bool {
+        match self.chart.as_ref().filter(|_| self.language.is_chart()) {
+            Some(chart) => chart.action_at(anchor).is_some_and(|it| it.language == Some(CodeLanguage::St)),
+            None => self.language == Language::Pl7St,
+        }
+    }
+
     pub fn new(model: &UnitModel) -> Self {
         let numbers = numbers(model);
         let mut given = Given { values: vec![None; model.accesses.len()], whens: vec![None; model.accesses.len()] };
@@ -220,11 +244,17 @@ impl UnitFacts {
                 .iter()
                 .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
                 .collect(),
+            symbols: model
+                .symbols
+                .iter()
+                .map(|it| FactSymbol { name: it.name.clone(), object: it.object.clone(), anchor: it.anchor })
+                .collect(),
             instructions: model.instructions,
             computes: model.computes,
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
+            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity))),
         }
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod calls;
 pub mod channels;
+pub mod chart;
 pub mod conditions;
 pub mod counts;
 pub mod drives;
@@ -11,6 +12,7 @@ pub mod edges;
 pub mod facts;
 pub mod gaps;
 pub mod program;
+pub mod symbols;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,13 +1,17 @@
 //! A program as a whole: the access table over all units, the call graph, and what scans what.
 
+use std::cell::OnceCell;
+
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Site;
+use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::{Callee, Mode, Section};
+use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -16,6 +20,8 @@ pub enum Context {
     Cyclic,
     Fast,
     Event(u16),
+    /// A task of a PL7 project of which only the number is known.
+    Task(u16),
     /// OB 100 to 102: once, before the first scan.
     Startup,
     /// Any other OB, by number.
@@ -45,6 +51,7 @@ impl Context {
             (Self::Cyclic, _) => "MAST".to_owned(),
             (Self::Fast, _) => "FAST".to_owned(),
             (Self::Event(number), _) => format!("EVT{number}"),
+            (Self::Task(number), _) => format!("task {number}"),
             (Self::Startup, _) => "the start-up blocks".to_owned(),
             (Self::Interrupt(number), _) => format!("OB{number}"),
         }
@@ -146,6 +153,7 @@ pub struct ProgramIndex<'a> {
     exclusive: FxHashSet<(u32, u32, u32)>,
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
+    charts: OnceCell<Vec<Chart<'a>>>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -196,11 +204,20 @@ impl<'a> ProgramIndex<'a> {
             exclusive,
             exclusive_uses,
             names,
+            charts: OnceCell::new(),
         }
+    }
+
+    /// The charts of the program, whose pages are joined.
+    pub fn charts(&self) -> &[Chart<'a>] {
+        self.charts.get_or_init(|| chart::join(&self.units))
     }
 
     /// Whether two writes of one object can both take effect in one scan.
     pub fn clash(&self, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
+        if chart::in_different_steps(self.units[a.unit as usize], a.it, self.units[b.unit as usize], b.it) {
+            return false;
+        }
         if a.unit != b.unit {
             return self.same_scan(a.unit, b.unit);
         }
@@ -423,6 +440,7 @@ fn own_context(entity: &Entity) -> Option<Context> {
         Entity::Pl7 { task: Task::Mast, .. } => Some(Context::Cyclic),
         Entity::Pl7 { task: Task::Fast, .. } => Some(Context::Fast),
         Entity::Pl7 { task: Task::Event(number), .. } => Some(Context::Event(*number)),
+        Entity::Pl7 { task: Task::Numbered(number), .. } => Some(Context::Task(*number)),
         Entity::Block { name: BlockName::Number(BlockKind::Ob, number), .. } => Some(match number {
             1 => Context::Cyclic,
             100..=102 => Context::Startup,
@@ -493,8 +511,10 @@ fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<
     let mut order = vec![u32::MAX; units.len()];
     let mut next = 0;
     let mut entries: Vec<usize> = (0..units.len()).filter(|&it| is_entry(&units[it].entity)).collect();
-    if family == Family::Pl72 {
-        entries.sort_by_key(|&it| pl7_2_rank(&units[it].entity));
+    match family {
+        Family::Pl72 => entries.sort_by_key(|&it| pl7_2_rank(&units[it].entity)),
+        Family::Pl7 => order_sections(units, &mut entries),
+        Family::Step7 => {}
     }
     for root in entries.into_iter().chain(0..units.len()) {
         let mut stack = vec![as_index(root)];
@@ -508,6 +528,27 @@ fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<
         }
     }
     order
+}
+
+/// The parts of a Grafcet section run one after the other wherever they are written: preliminary processing, chart, posterior
+/// processing (PL7:4895). They take the place of the first of them.
+fn order_sections(units: &[&UnitFacts], entries: &mut [usize]) {
+    let part = |it: usize| match &units[it].entity {
+        Entity::Pl7 { task, section, part: Part::Preliminary } => Some(((*task, section.as_ref()), 0)),
+        Entity::Pl7 { task, section, part: Part::Chart(_) } => Some(((*task, section.as_ref()), 1)),
+        Entity::Pl7 { task, section, part: Part::Posterior } => Some(((*task, section.as_ref()), 2)),
+        _ => None,
+    };
+    let mut first = FxHashMap::default();
+    for &it in entries.iter() {
+        if let Some((section, _)) = part(it) {
+            first.entry(section).or_insert(it);
+        }
+    }
+    entries.sort_by_key(|&it| match part(it) {
+        Some((section, rank)) => (first.get(&section).copied().unwrap_or(it), rank),
+        None => (it, 0),
+    });
 }
 
 /// Preliminary, sequential, posterior processing of the master task (PL72:1505-1511); the fast task interrupts them.
@@ -524,6 +565,8 @@ fn pl7_2_rank(entity: &Entity) -> u32 {
 /// program, of which none but the chart must be there (PL72:1505-1511).
 fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
     units.iter().any(|it| match (family, &it.entity) {
+        // A cross-reference is one of a whole project.
+        _ if it.language == Language::Pl7Xref => true,
         (Family::Pl72, Entity::Pl7 { task, part, .. }) => {
             *task == Task::Mast && matches!(part, Part::Main | Part::Chart(_))
         }
@@ -614,7 +657,8 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
     objects.sort_by_cached_key(|it| {
         let place = &it.object.footprint;
         let rank = ranks.get(&place.area).copied().unwrap_or(u32::MAX);
-        (rank, place.start, std::cmp::Reverse(place.bits), it.object.ty, it.object.indexed)
+        let address = u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits);
+        (address, it.object.ty, it.object.indexed)
     });
     objects
 }
@@ -668,6 +712,20 @@ mod tests {
         let units = units(&["PL7-2 FAST", "PL7-2 POST", "PL7-2 SEQ - X1", "PL7-2 PRL", "PL7-2 SEQ"]);
         let order = |family| ProgramIndex::new(family, units.iter().collect()).order;
         assert_eq!(order(Family::Pl72), [4, 3, 1, 0, 2]);
-        assert_eq!(order(Family::Pl7), [0, 1, 2, 3, 4]);
+        assert_eq!(order(Family::Step7), [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn the_parts_of_a_grafcet_section_follow_each_other() {
+        let units = units(&[
+            "MAST - P - CHART - PAGE 0",
+            "MAST - P - POST",
+            "MAST - Q",
+            "MAST - P - PRL",
+            "MAST - P - CHART - PAGE 1",
+            "FAST - MAIN",
+        ]);
+        let order = ProgramIndex::new(Family::Pl7, units.iter().collect()).order;
+        assert_eq!(order, [1, 3, 4, 0, 2, 5]);
     }
 }

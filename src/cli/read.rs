@@ -67,7 +67,7 @@ fn input(path: String, bytes: &[u8], explicit: bool, settings: &Settings, dialec
     let hint = FileHint { path: Some(Path::new(&path)), explicit, dialect };
     let (source, detected) = load(hint, bytes, settings.encoding());
     let reason = match detected {
-        Detected::Exchange | Detected::Pasted(_) | Detected::Pl72 | Detected::Step7 => {
+        Detected::Exchange | Detected::Pasted(_) | Detected::Pl72 | Detected::Step7 | Detected::Stx => {
             return Ok(Input { path, source, detected });
         }
         Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),

@@ -130,6 +130,8 @@ impl<'a> ProgramCx<'a> {
 
 /// A file after all rules of its units and its program ran. Places are ranges of the file.
 pub struct FileCx<'a> {
+    /// As it was decoded.
+    pub text: &'a str,
     /// Words of suppression comments that suppressed nothing, or name no rule.
     pub leftovers: &'a [Leftover],
 }

@@ -18,7 +18,7 @@ pub use crate::analysis::Site;
 pub use context::{FileCx, ProgramCx, UnitCx};
 pub use finding::{Applicability, Edit, Finding, Fix, Location, Related, Reported, Severity, Sink};
 pub use nearest::nearest;
-pub use outcome::{Diagnostic, Outcome, SourceView, Unread, UnreadReason};
+pub use outcome::{Diagnostic, MadeOf, Outcome, SourceView, Unread, UnreadReason};
 pub(crate) use rule::run;
 pub use rule::{Check, Rule, find, rules};
 pub use select::{Selection, Selector, UnknownRule};

@@ -22,6 +22,15 @@ pub struct SourceView {
     pub entities: usize,
     /// Bytes in units of a language that is not read yet, or that the syntax could not place.
     pub not_understood: usize,
+    /// For a text that is not the file's own but made of its tables: lines and columns of it mean nothing to others.
+    pub made_of: Option<MadeOf>,
+}
+
+/// What the text of a binary file was made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MadeOf {
+    /// Whether the project has a cross-reference: without one, nothing is known of its code.
+    pub cross_reference: bool,
 }
 
 /// A finding with everything that a report shows of it.

@@ -77,9 +77,21 @@ impl Rule {
     pub fn is_for(&self, language: Language) -> bool {
         self.dialects.iter().any(|dialect| match *dialect {
             "all" => true,
-            "pl7" => matches!(language, Language::Pl7Il | Language::Pl7St),
-            "il" => language == Language::Pl7Il,
-            "st" => language == Language::Pl7St,
+            "pl7" => matches!(
+                language,
+                Language::Pl7Il
+                    | Language::Pl7St
+                    | Language::Pl7Ld
+                    | Language::Pl7Gr7
+                    | Language::Sfc
+                    | Language::Exchange
+                    | Language::Pl7Xref
+            ),
+            "ld" => language == Language::Pl7Ld,
+            // The actions and receptivities of a chart are in any of the languages.
+            "il" => language == Language::Pl7Il || language.is_chart(),
+            "st" => language == Language::Pl7St || language.is_chart(),
+            "g7" => language.is_chart(),
             "s7" => matches!(language, Language::Awl(_)),
             _ => false,
         })
@@ -88,7 +100,7 @@ impl Rule {
     /// Whether programs of a family are among what the rule looks at.
     pub fn is_for_family(&self, family: Family) -> bool {
         self.dialects.iter().any(|dialect| match family {
-            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st"),
+            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld" | "g7"),
             Family::Pl72 => matches!(*dialect, "all" | "pl72"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })

@@ -445,11 +445,17 @@ impl Settings {
     /// What programs of a family are checked for: the configured controller with the configured counts, when it is one of
     /// that family, else what holds for every controller of the family.
     pub fn target(&self, family: Family) -> Target {
+        self.target_or(family, None)
+    }
+
+    /// As [`Self::target`], for a program that names its controller itself: unless one is configured, it is that one.
+    pub fn target_or(&self, family: Family, named: Option<Target>) -> Target {
+        let or_any = |it: Option<Target>| it.or(named).unwrap_or(Target::any(family));
         let configured = self.controller().and_then(|it| it.parse::<Target>().ok());
         match configured.map(|it| it.with_version(self.version()).unwrap_or(it)) {
-            Some(it) if it.family() != family => Target::any(family),
-            it if self.0.file.objects.is_empty() => it.unwrap_or(Target::any(family)),
-            it => it.unwrap_or(Target::any(family)).with_counts(|key| self.objects(key)),
+            Some(it) if it.family() != family => or_any(None),
+            it if self.0.file.objects.is_empty() => or_any(it),
+            it => or_any(it).with_counts(|key| self.objects(key)),
         }
     }
 

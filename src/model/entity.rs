@@ -31,6 +31,8 @@ pub enum Task {
     Fast,
     /// EVTi of a PL7 application.
     Event(u16),
+    /// A task of a PL7 project by the number that the project gives it; which task that is, is not known.
+    Numbered(u16),
 }
 
 impl fmt::Display for Task {
@@ -39,6 +41,7 @@ impl fmt::Display for Task {
             Self::Mast => f.write_str("MAST"),
             Self::Fast => f.write_str("FAST"),
             Self::Event(number) => write!(f, "EVT{number}"),
+            Self::Numbered(number) => write!(f, "task {number}"),
         }
     }
 }

@@ -2,12 +2,15 @@
 //!
 //! **Invariant:** this module knows no rule.
 
+pub mod chart;
 pub mod entity;
 pub mod expr;
+pub mod ladder;
 pub mod literal;
 pub mod lower;
 pub mod object;
 pub mod pl7_kinds;
+pub mod symbols;
 pub mod unit;
 
 pub use unit::UnitModel;

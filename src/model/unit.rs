@@ -9,10 +9,13 @@ use rowan::TextRange;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
+use super::chart::{Chart, CodeLanguage};
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
+use super::ladder::Flaw;
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
+use super::symbols::{Remark, Symbol};
 use crate::syntax::Language;
 
 /// An input or output of a timer, counter, monostable, register or drum.
@@ -70,6 +73,8 @@ pub enum Mode {
     Reset,
     /// A word, table or text takes a value.
     Store,
+    /// Written in a way that the source does not tell: by assignment, set, reset or store.
+    Write,
     /// The previous value that `FP`/`FN` keeps: read and written.
     EdgeMemory,
     /// A pin of a block takes a condition.
@@ -99,6 +104,7 @@ impl Mode {
                 | Self::Set
                 | Self::Reset
                 | Self::Store
+                | Self::Write
                 | Self::EdgeMemory
                 | Self::InOut
                 | Self::Output
@@ -120,7 +126,7 @@ impl Mode {
             Self::AssignNot => "assigned (negated)",
             Self::Set => "set",
             Self::Reset => "reset",
-            Self::Store => "written",
+            Self::Store | Self::Write => "written",
             Self::EdgeMemory => "used as edge memory",
             Self::Drive(_) => "driven",
             Self::InOut => "passed to a call",
@@ -224,6 +230,8 @@ pub struct Label {
     pub range: TextRange,
     /// Index of the first statement after it.
     pub statement: u32,
+    /// The piece of code that it belongs to, as [`Jump::part`].
+    pub part: u32,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -240,6 +248,8 @@ pub struct Jump {
     pub when: ExprId,
     /// The first label of that name, an index into [`UnitModel::labels`].
     pub target: Option<u32>,
+    /// Number of the piece of code, with labels of its own, that it belongs to: an action of a chart. 0 elsewhere.
+    pub part: u32,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -373,6 +383,9 @@ pub enum OddityKind {
     /// Operand of a type that the instruction does not take: the sentence says which it takes.
     OperandType(String),
 
+    // PL7 ladder.
+    Ladder(Flaw),
+
     // STEP 7 and STEP 5.
     /// The RLO at block start, which is the caller's.
     RloFromCaller,
@@ -477,6 +490,10 @@ pub struct UnitModel {
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
     pub declarations: Vec<Declaration>,
+    /// Symbols that the unit declares for the program.
+    pub symbols: Vec<Symbol>,
+    /// Comments whose length is limited.
+    pub remarks: Vec<Remark>,
     /// Indexes of PL7 objects, in the order of the text.
     pub indexes: Vec<Index>,
     /// Durations, as written.
@@ -499,6 +516,8 @@ pub struct UnitModel {
     pub has_gaps: bool,
     /// Somewhere a floating-point number meets a number that may not be one.
     pub mixes_floats: bool,
+    /// What the unit holds of a chart.
+    pub chart: Option<Box<Chart>>,
 }
 
 impl UnitModel {
@@ -508,6 +527,14 @@ impl UnitModel {
 
     pub fn statement(&self, access: &Access) -> Option<&Statement> {
         self.statements.get(access.statement as usize)
+    }
+
+    /// Whether an access is one of structured text.
+    pub fn is_structured_text(&self, access: &Access) -> bool {
+        match self.chart.as_ref().filter(|_| self.language.is_chart()) {
+            Some(chart) => chart.action_at(access.anchor).is_some_and(|it| it.language == Some(CodeLanguage::St)),
+            None => self.language == Language::Pl7St,
+        }
     }
 
     /// Place of an anchor; the heading when there is none.

@@ -15,18 +15,21 @@ pub(super) fn write(outcome: &Outcome, options: &Options, out: &mut dyn io::Writ
         else {
             continue;
         };
+        let entry = positions.entry(finding.place.file, finding.place.range);
+        let (at, entity) = match entry {
+            Some(entry) => (String::new(), entry.to_string()),
+            None => (format!("{}:{}:", span.start.line, span.start.column), diagnostic.entity.clone()),
+        };
         let style = if options.colour { human::style(finding.severity) } else { anstyle::Style::new() };
         writeln!(
             out,
-            "{}:{}:{}: {style}{}[{}] {}{style:#}: {} [{}]",
+            "{}:{at} {style}{}[{}] {}{style:#}: {} [{}]",
             visible(&file.path),
-            span.start.line,
-            span.start.column,
             finding.rule.code,
             finding.rule.name,
             finding.severity.as_str(),
             visible(&finding.message),
-            visible(&diagnostic.entity),
+            visible(&entity),
         )?;
     }
     for unread in &outcome.unread {

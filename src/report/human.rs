@@ -164,6 +164,9 @@ fn render(
     out: &mut dyn io::Write,
 ) -> io::Result<()> {
     let finding = &diagnostic.finding;
+    if pictures.positions.entry(finding.place.file, finding.place.range).is_some() {
+        return render_entry(diagnostic, pictures.positions, options, out);
+    }
     if pictures.made.len() > PICTURES {
         pictures.made.clear();
     }
@@ -231,6 +234,39 @@ fn render(
             writeln!(out, "{}", line.trim_end())?;
         }
     }
+    writeln!(out)
+}
+
+/// A finding in a text that was made of tables: entries instead of excerpts.
+fn render_entry(
+    diagnostic: &Diagnostic,
+    positions: &Positions<'_>,
+    options: &Options,
+    out: &mut dyn io::Write,
+) -> io::Result<()> {
+    let finding = &diagnostic.finding;
+    let shown = |place: &Location| {
+        positions.entry(place.file, place.range).map_or_else(String::new, |it| visible(&it.to_string()).into_owned())
+    };
+    let style = if options.colour { style(finding.severity) } else { Style::new() };
+    let (severity, rule) = (finding.severity.as_str(), finding.rule);
+    writeln!(out, "{style}{severity}[{} {}]{style:#}: {}", rule.code, rule.name, visible(&finding.message))?;
+    let path = positions.file(finding.place.file).map_or("", |it| &it.path);
+    writeln!(out, "   ╭─[ {} ]", visible(path))?;
+    let label = finding.label.as_deref().map_or_else(String::new, |it| format!("  ({})", visible(it)));
+    writeln!(out, "   │ {}{label}", shown(&finding.place))?;
+    for related in finding.related.iter().take(PLACE_LIMIT) {
+        writeln!(out, "   │ {}  ({})", shown(&related.place), visible(&related.message))?;
+    }
+    writeln!(out, "   │")?;
+    let help = first_paragraph(finding.rule.help());
+    for (title, text) in [("Help", help), ("Note", notes(diagnostic))] {
+        for (number, line) in text.lines().enumerate() {
+            let title = if number == 0 { format!("{title}: ") } else { " ".repeat(title.len() + 2) };
+            writeln!(out, "   │ {title}{line}")?;
+        }
+    }
+    writeln!(out, "───╯")?;
     writeln!(out)
 }
 

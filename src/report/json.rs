@@ -4,10 +4,10 @@
 
 use std::io;
 
-use rowan::TextRange;
+use rowan::{TextRange, TextSize};
 use serde::Serialize;
 
-use super::position::{Positions, clamp};
+use super::position::{LineCol, Positions, clamp};
 use super::summary::Summary;
 use crate::lint::{Applicability, Diagnostic, Location, Outcome, Related, UnreadReason};
 
@@ -43,8 +43,12 @@ struct Position {
 #[derive(Serialize)]
 struct Place<'a> {
     path: &'a str,
-    start: Position,
-    end: Position,
+    /// None in a file that is no text.
+    start: Option<Position>,
+    end: Option<Position>,
+    /// In such a file, what stands there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    entry: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -181,12 +185,12 @@ fn place<'a>(positions: &Positions<'a>, location: &Location) -> Option<Place<'a>
     let file = positions.file(location.file)?;
     let range: TextRange = clamp(&file.text, location.range);
     let span = positions.span(location.file, range)?;
-    let (start, end) = (span.start, span.end);
-    Some(Place {
-        path: &file.path,
-        start: Position { line: start.line, column: start.column, offset: range.start().into() },
-        end: Position { line: end.line, column: end.column, offset: range.end().into() },
-    })
+    if let Some(entry) = positions.entry(location.file, range) {
+        return Some(Place { path: &file.path, start: None, end: None, entry: Some(entry.to_string()) });
+    }
+    let at = |it: LineCol, offset: TextSize| Some(Position { line: it.line, column: it.column, offset: offset.into() });
+    let (start, end) = (at(span.start, range.start()), at(span.end, range.end()));
+    Some(Place { path: &file.path, start, end, entry: None })
 }
 
 fn finding<'a>(positions: &Positions<'a>, diagnostic: &'a Diagnostic) -> Option<FindingView<'a>> {

@@ -24,6 +24,32 @@ pub fn count_lines(text: &str) -> usize {
 pub struct Positions<'a> {
     outcome: &'a Outcome,
     indexes: Vec<OnceCell<LineIndex>>,
+    /// Of texts made of tables: offsets of the lines that name a module, and of those that number a place in it.
+    headings: Vec<OnceCell<[Vec<u32>; 2]>>,
+}
+
+/// A line of a project's tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry<'a> {
+    /// `%M10 W`, `Pump AT %Q2.0`.
+    pub text: &'a str,
+    /// `MAST - module 0`; `[DATA_UNIT]` for declarations.
+    pub module: &'a str,
+    /// Number of the place in the module, as the project counts them.
+    pub place: Option<&'a str>,
+}
+
+impl std::fmt::Display for Entry<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if !self.module.starts_with('[') && self.module != self.text {
+            f.write_str(self.module)?;
+            if let Some(place) = self.place {
+                write!(f, ", place {place}")?;
+            }
+            f.write_str(": ")?;
+        }
+        f.write_str(self.text)
+    }
 }
 
 /// A range to show; the end is exclusive.
@@ -35,7 +61,11 @@ pub struct Span {
 
 impl<'a> Positions<'a> {
     pub fn new(outcome: &'a Outcome) -> Self {
-        Self { outcome, indexes: outcome.files.iter().map(|_| OnceCell::new()).collect() }
+        Self {
+            outcome,
+            indexes: outcome.files.iter().map(|_| OnceCell::new()).collect(),
+            headings: outcome.files.iter().map(|_| OnceCell::new()).collect(),
+        }
     }
 
     pub fn file(&self, file: u32) -> Option<&'a SourceView> {
@@ -47,12 +77,43 @@ impl<'a> Positions<'a> {
         Some(self.indexes.get(file as usize)?.get_or_init(|| LineIndex::new(text)))
     }
 
+    /// Of a place in a text that was made of tables, in which lines and columns mean nothing: what stands there, and
+    /// where in the project. `None` for the text of a file.
+    pub fn entry(&self, file: u32, range: TextRange) -> Option<Entry<'a>> {
+        let view = self.file(file).filter(|it| it.made_of.is_some())?;
+        let headings = self.headings.get(file as usize)?;
+        let [modules, places] = headings.get_or_init(|| ["[", "@"].map(|mark| lines_with(&view.text, mark)));
+        let start = clamp(&view.text, range).start();
+        let text = line_at(&view.text, start.into()).trim_end_matches(';');
+        let above =
+            |lines: &[u32]| lines.get(lines.partition_point(|&it| it <= u32::from(start)).checked_sub(1)?).copied();
+        let module = above(modules);
+        let place = above(places).filter(|it| module.is_none_or(|module| module < *it));
+        let line = |at: u32| line_at(&view.text, at as usize);
+        let place = place.and_then(|it| line(it).strip_prefix('@'));
+        let module = module.map_or("", |it| line(it).strip_prefix("[XREF] ").unwrap_or(line(it)));
+        let is_heading = text.starts_with(['[', '@']);
+        Some(Entry { text: if is_heading { module } else { text }, module, place })
+    }
+
     /// The path and the span of a place; `None` when the run has no such file.
     pub fn span(&self, file: u32, range: TextRange) -> Option<Span> {
         let range = clamp(&self.file(file)?.text, range);
         let index = self.index(file)?;
         Some(Span { start: index.line_col(range.start()), end: index.line_col(range.end()) })
     }
+}
+
+/// Offsets of the lines of a text that begin with a mark.
+fn lines_with(text: &str, mark: &str) -> Vec<u32> {
+    let starts = std::iter::once(0).chain(memchr::memchr_iter(b'\n', text.as_bytes()).map(|it| it + 1));
+    starts.filter(|&it| text.get(it..).is_some_and(|it| it.starts_with(mark))).map(number).collect()
+}
+
+/// The line that begins at or goes through an offset, without its end.
+fn line_at(text: &str, offset: usize) -> &str {
+    let start = text.get(..offset).and_then(|it| it.rfind('\n')).map_or(0, |it| it + 1);
+    text.get(start..).and_then(|it| it.lines().next()).unwrap_or_default().trim()
 }
 
 /// A range widened to whole characters and held inside the text.

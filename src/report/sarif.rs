@@ -16,7 +16,7 @@ use serde_sarif::sarif::{
 };
 
 use super::fingerprint::{Fingerprints, length};
-use super::position::{Positions, Span, clamp};
+use super::position::{Entry, Positions, Span, clamp};
 use super::{Options, citation};
 use crate::lint::{self, Applicability, Diagnostic, Outcome, Rule, Severity, UnreadReason};
 
@@ -162,6 +162,12 @@ fn descriptor(rule: &'static Rule) -> ReportingDescriptor {
     descriptor
 }
 
+/// The module of a project and the entry in it.
+fn logical_of(entry: &Entry<'_>) -> Vec<LogicalLocation> {
+    let name = entry.text;
+    vec![LogicalLocation::builder().name(name).fully_qualified_name(entry.to_string()).kind("member").build()]
+}
+
 const UNREADABLE: &str = "unreadable-file";
 const UNSUPPORTED: &str = "unsupported-file";
 const INTERNAL: &str = "internal-error";
@@ -286,11 +292,19 @@ impl Cx<'_> {
         if !file.dialect.is_empty() {
             artifact.source_language = Some(file.dialect.clone());
         }
+        if file.made_of.is_some() {
+            // A binary file, of which the text says neither encoding nor length.
+            artifact.encoding = None;
+            return artifact;
+        }
         artifact.length = length(file).and_then(|it| i64::try_from(it).ok());
         artifact
     }
 
     fn physical(&self, place: &lint::Location) -> Option<PhysicalLocation> {
+        if self.positions.entry(place.file, place.range).is_some() {
+            return Some(PhysicalLocation::builder().artifact_location(self.file(place.file)?).build());
+        }
         let span = self.positions.span(place.file, place.range)?;
         let text = &self.positions.file(place.file)?.text;
         let mut region = region(span);
@@ -305,7 +319,10 @@ impl Cx<'_> {
         let finding = &diagnostic.finding;
         let span = self.positions.span(finding.place.file, finding.place.range)?;
         let mut location = Location::builder().physical_location(self.physical(&finding.place)?).build();
-        if !diagnostic.entity.is_empty() {
+        let entry = self.positions.entry(finding.place.file, finding.place.range);
+        if let Some(entry) = entry {
+            location.logical_locations = Some(logical_of(&entry));
+        } else if !diagnostic.entity.is_empty() {
             let entity = diagnostic.entity.as_str();
             let logical = LogicalLocation::builder().name(entity).fully_qualified_name(entity).kind("module").build();
             location.logical_locations = Some(vec![logical]);
@@ -316,12 +333,19 @@ impl Cx<'_> {
             .take(RELATED_LIMIT)
             .filter_map(|it| {
                 let physical = self.physical(&it.place)?;
-                Some(Location::builder().physical_location(physical).message(message(&it.message)).build())
+                let mut location =
+                    Location::builder().physical_location(physical).message(message(&it.message)).build();
+                let entry = self.positions.entry(it.place.file, it.place.range);
+                location.logical_locations = entry.map(|it| logical_of(&it));
+                Some(location)
             })
             .zip(1..)
             .map(|(location, id)| Location { id: Some(id), ..location })
             .collect();
-        let mut text = format!("{}.", finding.message);
+        let mut text = match entry {
+            Some(entry) => format!("{} ({entry}).", finding.message),
+            None => format!("{}.", finding.message),
+        };
         for note in &finding.notes {
             text.push(' ');
             text.push_str(note);

@@ -33,6 +33,9 @@ pub struct Summary {
     /// Files that are no PLC programs.
     pub not_plc: usize,
     pub internal_errors: usize,
+    /// PL7 projects, of which the tables are read and the code is not, and those among them without a cross-reference.
+    pub projects: usize,
+    pub without_reference: usize,
     /// Families that were checked for no controller in particular, though some rule would find more for one.
     pub untargeted: Vec<Family>,
 }
@@ -47,7 +50,12 @@ impl Summary {
         for file in &outcome.files {
             it.files += 1;
             it.entities += file.entities;
-            it.lines += count_lines(&file.text);
+            if let Some(made_of) = file.made_of {
+                it.projects += 1;
+                it.without_reference += usize::from(!made_of.cross_reference);
+            } else {
+                it.lines += count_lines(&file.text);
+            }
             it.bytes += file.text.len();
             it.not_understood += file.not_understood.min(file.text.len());
         }
@@ -114,6 +122,13 @@ impl Summary {
         }
         if !left_out.is_empty() {
             put(&mut out, format_args!("; left out: {}", left_out.join(", ")));
+        }
+        if self.projects > 0 {
+            let projects = count(self.projects, "PL7 project", "PL7 projects");
+            put(&mut out, format_args!("; of {projects} the cross-reference is read, not the code"));
+            if self.without_reference > 0 {
+                put(&mut out, format_args!(" (not available in {})", grouped(self.without_reference)));
+            }
         }
         if !self.untargeted.is_empty() {
             let families: Vec<&str> = self.untargeted.iter().map(|it| it.as_str()).collect();

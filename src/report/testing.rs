@@ -27,6 +27,7 @@ pub(crate) fn view(path: &str, text: &str, encoding: &'static str) -> SourceView
         dialect: "STEP 7 AWL (German mnemonics)".into(),
         entities: 2,
         not_understood: 0,
+        made_of: None,
     }
 }
 

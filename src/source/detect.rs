@@ -10,8 +10,10 @@ use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
 };
 use crate::model::entity::BlockKind;
+use crate::syntax::pl7::ladder_words;
 
 use super::scan::{Comments, Lines};
+use super::stx;
 
 /// What the user says that files are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -19,15 +21,28 @@ pub enum Dialect {
     #[default]
     Auto,
     Step7,
-    /// PL7, instruction list or structured text by content.
+    /// PL7, its language by content.
     Pl7,
     Pl7Il,
     Pl7St,
+    Pl7Gr7,
+    Pl7Ld,
     Pl72,
+    Sfc,
 }
 
 impl Dialect {
-    pub const ALL: [Self; 6] = [Self::Auto, Self::Step7, Self::Pl7, Self::Pl7Il, Self::Pl7St, Self::Pl72];
+    pub const ALL: [Self; 9] = [
+        Self::Auto,
+        Self::Step7,
+        Self::Pl7,
+        Self::Pl7Il,
+        Self::Pl7St,
+        Self::Pl7Ld,
+        Self::Pl7Gr7,
+        Self::Pl72,
+        Self::Sfc,
+    ];
 
     pub fn as_str(self) -> &'static str {
         match self {
@@ -36,7 +51,10 @@ impl Dialect {
             Self::Pl7 => "pl7",
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
+            Self::Pl7Gr7 => "pl7-gr7",
+            Self::Pl7Ld => "pl7-ld",
             Self::Pl72 => "pl7-2",
+            Self::Sfc => "sfc",
         }
     }
 }
@@ -53,7 +71,8 @@ pub struct UnknownDialect(pub String);
 
 impl fmt::Display for UnknownDialect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown dialect `{}`, expected auto, step7, pl7, pl7-il, pl7-st or pl7-2", self.0)
+        let known: Vec<&str> = Dialect::ALL.iter().map(|it| it.as_str()).collect();
+        write!(f, "unknown dialect `{}`, expected one of {}", self.0, known.join(", "))
     }
 }
 
@@ -69,11 +88,16 @@ impl FromStr for Dialect {
     }
 }
 
-/// The text languages of PL7.
+/// The languages of PL7 whose sections are text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pl7Text {
     Il,
     St,
+    /// Pages of Grafcet in the exchange form.
+    Gr7,
+    /// A chart in the textual form of IEC 61131-3.
+    Sfc,
+    Ld,
 }
 
 /// What a file is.
@@ -87,6 +111,8 @@ pub enum Detected {
     Pl72,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
+    /// A PL7 project: its text is the listing of its tables.
+    Stx,
     /// Part of a controller program, in a form that plclint does not read. `what` names the form.
     Unsupported { what: &'static str },
     /// It should be a controller program by its name, or was asked for, and is not text. `why` completes "not read: ".
@@ -106,9 +132,7 @@ pub struct FileHint<'p> {
 
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
-    pub const LADDER: &str = "PL7 ladder (LD)";
-    pub const GRAFCET: &str = "PL7 Grafcet (GR7)";
-    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL and ST";
+    pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST, LD and GR7";
     pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
@@ -121,7 +145,6 @@ pub mod unsupported {
     pub const STEP5: &str = "STEP 5 program";
     pub const SYMBOLS: &str = "STEP 7 symbol table";
     pub const IEC: &str = "IEC 61131-3 text that is not PL7";
-    pub const SFC: &str = "IEC 61131-3 textual SFC";
 
     /// Whether such a file holds code that may use any object and call any block.
     pub fn is_code(what: &str) -> bool {
@@ -209,12 +232,29 @@ pub fn has_plc_extension(path: &Path) -> bool {
 
 /// Decodes and recognises a file. Data that is not text is not decoded: its text is empty.
 pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (SourceText, Detected) {
+    if let Some(project) = project(hint, bytes, encoding) {
+        return match project {
+            Ok(source) => (source, Detected::Stx),
+            Err(why) => (decode(b"", encoding), Detected::Unreadable { why }),
+        };
+    }
     if let Some(detected) = detect_binary(hint, bytes, encoding) {
         return (decode(b"", encoding), detected);
     }
     let source = decode(bytes, encoding);
     let detected = detect(hint, &source.text);
     (source, detected)
+}
+
+/// The listing of a PL7 project, or why it has none; `None` if the bytes are no project.
+fn project(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> Option<Result<SourceText, &'static str>> {
+    let by_name = matches!(extension(hint.path), Extension::Form(unsupported::PROJECT, _));
+    if !(by_name || hint.explicit) || hint.dialect == Dialect::Step7 || !stx::is_archive(bytes) {
+        return None;
+    }
+    let listing = stx::listing(bytes, encoding.filter(|it| it.is_single_byte()));
+    // Archives of all kinds go by other names.
+    if by_name { Some(listing) } else { listing.ok().map(Ok) }
 }
 
 /// What a file is whose bytes are not text in the given encoding; `None` if they are.
@@ -250,22 +290,30 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
         Dialect::Step7 => Detected::Step7,
-        Dialect::Pl7 | Dialect::Pl7Il | Dialect::Pl7St | Dialect::Pl72 if tally.is_exchange() => Detected::Exchange,
+        Dialect::Pl7
+        | Dialect::Pl7Il
+        | Dialect::Pl7St
+        | Dialect::Pl7Ld
+        | Dialect::Pl7Gr7
+        | Dialect::Pl72
+        | Dialect::Sfc
+            if tally.is_exchange() =>
+        {
+            Detected::Exchange
+        }
         Dialect::Pl7 => Detected::Pasted(tally.pl7_text(extension(hint.path))),
         Dialect::Pl7Il => Detected::Pasted(Pl7Text::Il),
         Dialect::Pl7St => Detected::Pasted(Pl7Text::St),
+        Dialect::Pl7Gr7 => Detected::Pasted(Pl7Text::Gr7),
+        Dialect::Pl7Ld => Detected::Pasted(Pl7Text::Ld),
         Dialect::Pl72 => Detected::Pl72,
+        Dialect::Sfc => Detected::Pasted(Pl7Text::Sfc),
     }
 }
 
 /// The language of PL7 text that no heading and no file name tells.
 pub(super) fn pl7_text(text: &str) -> Pl7Text {
     Tally::of(text).pl7_text(Extension::Other)
-}
-
-/// The form of PL7 text that is neither IL nor ST, by its content.
-pub(super) fn pl7_unsupported(text: &str) -> Option<&'static str> {
-    Tally::of(text).pl7_unsupported()
 }
 
 fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) -> Detected {
@@ -276,12 +324,16 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
             | Extension::St
             | Extension::Ld
             | Extension::Gr7
-            | Extension::Form(
-                unsupported::DFB | unsupported::VARIABLES | unsupported::APPLICATION | unsupported::ENCRYPTED,
-                _
-            )
+            | Extension::Form(unsupported::DFB | unsupported::VARIABLES | unsupported::APPLICATION, _)
     );
+    // The header of an encrypted block may be legible; what matters is not.
+    if extension == Extension::Form(unsupported::ENCRYPTED, Storage::Either) {
+        return Detected::Unsupported { what: unsupported::ENCRYPTED };
+    }
     if tally.is_exchange() || of_pl7 && tally.blocks > 0 {
+        return Detected::Exchange;
+    }
+    if extension == Extension::Form(unsupported::VARIABLES, Storage::Text) && tally.variables > 0 {
         return Detected::Exchange;
     }
     if !matches!(extension, Extension::Form(..))
@@ -305,9 +357,11 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Il | Extension::St if tally.lines == 0 || weak && tally.il + tally.st > 0 => {
             Detected::Pasted(tally.pl7_text(extension))
         }
-        Extension::Ld if tally.rung > 0 => Detected::Unsupported { what: unsupported::LADDER },
-        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Unsupported { what: unsupported::GRAFCET },
-        Extension::Sfc if tally.chart > 0 => Detected::Unsupported { what: unsupported::SFC },
+        // A sentence or an expression alone: nothing but what has addresses or marks of PL7.
+        Extension::Il | Extension::St if tally.pl7 == tally.lines => Detected::Pasted(tally.pl7_text(extension)),
+        Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
+        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
+        Extension::Sfc if tally.chart > 0 => Detected::Pasted(Pl7Text::Sfc),
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
         Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
@@ -318,6 +372,13 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         }
         _ => Detected::NotPlc,
     }
+}
+
+/// Whether a line declares a variable, with an address or a type.
+fn is_variable(line: &str) -> bool {
+    let (name, rest) = word(line);
+    let rest = rest.trim_start();
+    !name.is_empty() && (rest.starts_with("AT %") || rest.starts_with("at %") || rest.starts_with(':'))
 }
 
 /// How much of a text is looked at.
@@ -339,6 +400,7 @@ struct Tally {
     /// Headings of pasted PL7 text, by language.
     headings_il: u32,
     headings_st: u32,
+    headings_ld: u32,
     headings_other: u32,
     /// Headings of PL7-2 text, in any language; the others do not count them.
     headings_pl7_2: u32,
@@ -356,8 +418,16 @@ struct Tally {
     in_code_block: bool,
     /// Declaration sections and program units of IEC 61131-3.
     iec: u32,
+    /// `Pump AT %M0 : EBOOL;`
+    variables: u32,
+    /// Words that frame rungs, and elements of them.
     rung: u32,
+    cells: u32,
+    /// Words of charts, and those among them that only the pages of PL7 have.
     chart: u32,
+    pages: u32,
+    /// Lines of charts that start with a word which other texts have too.
+    chart_words: u32,
     /// Words of S7-GRAPH.
     graph: u32,
     step5: u32,
@@ -402,7 +472,8 @@ impl Tally {
                 _ if heading.pl7_2 => self.headings_pl7_2 += 1,
                 HeadingLanguage::Il => self.headings_il += 1,
                 HeadingLanguage::St => self.headings_st += 1,
-                HeadingLanguage::Ladder | HeadingLanguage::Grafcet => self.headings_other += 1,
+                HeadingLanguage::Ladder => self.headings_ld += 1,
+                HeadingLanguage::Grafcet => self.headings_other += 1,
             }
         } else if let Some(block) = block_header(line) {
             self.block_headers += 1;
@@ -420,19 +491,30 @@ impl Tally {
         let first = word(code).0.to_ascii_uppercase();
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
+        self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
             Some(Pl7Text::Il) => self.il += 1,
             Some(Pl7Text::St) => {
                 self.st += 1;
                 self.scl += u32::from(self.in_code_block);
             }
-            None => {}
+            Some(Pl7Text::Ld | Pl7Text::Gr7 | Pl7Text::Sfc) | None => {}
         }
         match first {
-            "RUNG" | "END_RUNG" | "OPEN_CONTACT" | "CLOSE_CONTACT" | "CLOSED_CONTACT" | "P_CONTACT" | "N_CONTACT"
-            | "H_LINK" | "V_LINK" | "EMPTY_LINE" | "EMPTY_CELL" | "SHORT_CIRCUIT" | "HASH_COIL" => self.rung += 1,
-            "NB_PAGES" | "END_PAGE" | "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "T_S_OR_LINK"
-            | "S_T_OR_LINK" => self.chart += 1,
+            "RUNG" | "END_RUNG" => self.rung += 1,
+            // Words without an underscore are words of other languages too.
+            _ if first.contains('_') && ladder_words::lookup(first).is_some() => {
+                self.rung += 1;
+                self.cells += 1;
+            }
+            "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK" => {
+                self.chart += 1;
+                self.pages += 1;
+            }
+            "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" => self.chart += 1,
+            "STEP" | "TRANSITION" | "ACTION" | "END_ACTION" | "PAGE" if is_chart_line(code, first) => {
+                self.chart_words += 1;
+            }
             "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
             "VAR_GLOBAL" | "PROGRAM" | "END_PROGRAM" | "CONFIGURATION" | "VAR_EXTERNAL" => self.iec += 1,
             "VAR" | "VAR_INPUT" | "VAR_OUTPUT" | "VAR_IN_OUT" | "END_VAR" => {
@@ -457,7 +539,7 @@ impl Tally {
     }
 
     fn headings(&self) -> u32 {
-        self.headings_il + self.headings_st + self.headings_other
+        self.headings_il + self.headings_st + self.headings_ld + self.headings_other
     }
 
     /// Lines that are code of a dialect that is read.
@@ -497,8 +579,8 @@ impl Tally {
         }
         let most = |count: u32| count * 5 >= lines * 3;
         let enough = |count: u32| count > 2 || count > 1 && count == lines;
-        if self.rung > 1 && most(self.rung + self.il) {
-            return Some(Detected::Unsupported { what: unsupported::LADDER });
+        if self.rung > 1 && self.cells > 0 && most(self.rung + self.il + self.st) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
         let step7 = self.step7 + if self.step7 > 0 { self.declarations } else { 0 };
         if enough(self.step7) && most(step7) && self.step7 > self.il + self.st {
@@ -508,6 +590,11 @@ impl Tally {
             return Some(Detected::Step7);
         }
         let structure = if self.st > 0 { self.scl } else { 0 };
+        let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
+        let is_chart = self.chart > 0 && self.chart + self.chart_words > 2 && self.graph == 0;
+        if is_chart && charted && (self.pages > 1 || self.pl7 > 0 && self.iec == 0) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
         if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
@@ -515,25 +602,36 @@ impl Tally {
     }
 
     fn pl7_text(&self, extension: Extension) -> Pl7Text {
-        let (il, st) = match (self.headings_il, self.headings_st) {
-            (0, 0) => (self.il, self.st),
+        // Under headings, each unit says what it is.
+        if self.chart > 0 && self.headings() == 0 {
+            return if self.pages > 0 { Pl7Text::Gr7 } else { Pl7Text::Sfc };
+        }
+        // Of all words, those of rungs are the least ambiguous; a line of a rung may look like a line of other languages.
+        let (il, st, ld) = match (self.headings_il, self.headings_st, self.headings_ld) {
+            (0, 0, 0) => (self.il, self.st, self.cells),
             headings => headings,
         };
+        if ld > 0 && ld >= il.max(st) {
+            return Pl7Text::Ld;
+        }
         match il.cmp(&st) {
             std::cmp::Ordering::Greater => Pl7Text::Il,
             std::cmp::Ordering::Equal if extension == Extension::Il => Pl7Text::Il,
             _ => Pl7Text::St,
         }
     }
+}
 
-    fn pl7_unsupported(&self) -> Option<&'static str> {
-        if self.chart > 0 {
-            Some(unsupported::GRAFCET)
-        } else if self.rung > 0 {
-            Some(unsupported::LADDER)
-        } else {
-            None
-        }
+/// Whether a line that starts with a common word is one of a chart: `STEP 3 AT (C 4,L 3) :`, `TRANSITION FROM X0 TO X1`.
+fn is_chart_line(code: &str, first: &str) -> bool {
+    let rest = word(code).1.trim_start();
+    let next = word(rest).0;
+    match first {
+        "STEP" => rest.contains(':'),
+        "ACTION" => rest.starts_with('(') || rest.contains(':'),
+        "TRANSITION" => rest.starts_with('(') || ["AT", "FROM"].iter().any(|it| it.eq_ignore_ascii_case(next)),
+        "PAGE" => !next.is_empty() && next.bytes().all(|it| it.is_ascii_digit()),
+        _ => true,
     }
 }
 
@@ -796,6 +894,7 @@ mod tests {
     const STEP7: Detected = Detected::Step7;
     const IL: Detected = Detected::Pasted(Pl7Text::Il);
     const ST: Detected = Detected::Pasted(Pl7Text::St);
+    const LD: Detected = Detected::Pasted(Pl7Text::Ld);
 
     fn unsupported(what: &'static str) -> Detected {
         Detected::Unsupported { what }
@@ -835,13 +934,13 @@ mod tests {
                 unsupported(unsupported::SCL),
             );
             check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", unsupported(unsupported::STEP5));
-            check(path, RUNG, unsupported(unsupported::LADDER));
+            check(path, RUNG, LD);
         }
         check("a.txt", "DATA_BLOCK DB 1\nSTRUCT\n a : INT;\nEND_STRUCT;\nBEGIN\n a := 1;\nEND_DATA_BLOCK", STEP7);
         check("a.txt", "U S1\n= Sto\nU X41\nO(\nUN T2p[21]\n)\n= X1", STEP7);
         check("a.txt", "U T1\n= A4.0", STEP7);
         check("a.txt", "ST : MAST - SR10\n%M0 := TRUE;", ST);
-        check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", ST);
+        check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", LD);
     }
 
     #[test]
@@ -884,7 +983,7 @@ mod tests {
                 check(path, &format!("(* press *)\n{heading}\n{rung}"), Detected::Pl72);
             }
             check(path, &format!("LD : PL7-2 - POST\n{rung}ST : MAST - SR1\n! %M1 := %M2;\n"), ST);
-            check(path, &format!("LD : MAST - POST\n{rung}"), ST);
+            check(path, &format!("LD : MAST - POST\n{rung}"), LD);
         }
         let prose = "A program of the TSX 27 is written under headings of this kind:\n\nLD : PL7-2 - POST\n\n\
                      There is one for each part of the program, as the document says.\n";
@@ -904,9 +1003,12 @@ mod tests {
         check("a.st", "Moteur := Depart AND NOT Arret;\n", ST);
         check("a.st", "VAR\n x : INT;\nEND_VAR\nx := x + 1;\n", unsupported(unsupported::IEC));
         check("a.dfb", "FUNCTION_BLOCK Cpt\nEND_FUNCTION_BLOCK", unsupported(unsupported::DFB));
-        check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", unsupported(unsupported::VARIABLES));
+        check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", Detected::Exchange);
+        check("a.scy", "Cpt_vis : Cpt_pieces;", Detected::Exchange);
+        check("a.scy", "Dear reader", unsupported(unsupported::VARIABLES));
+        check("a.ufb", "[HEADER]\n[SOURCE_UNIT]\nA8F0\n[EOF]", unsupported(unsupported::ENCRYPTED));
         check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
-        check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", unsupported(unsupported::GRAFCET));
+        check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", Detected::Pasted(Pl7Text::Gr7));
         check(
             "a.gr7",
             "FUNCTION_BLOCK \"x\"\nVAR\nEND_VAR\nGRAPH7\nSEQUENCE\nINITIAL_STEP S1:\n",
@@ -918,7 +1020,22 @@ mod tests {
         check("a.sdf", "\"a\",\"I 0.0\",\"BOOL\",\"x\"\n", unsupported(unsupported::SYMBOLS));
         check("a.asc", "126,Pump                    E       0.0 BOOL      x\n", unsupported(unsupported::SYMBOLS));
         check("a.seq", "\tPump\tE 0.0\tcomment\n", unsupported(unsupported::SYMBOLS));
-        check("a.sfc", "INITIAL_STEP X0 : END_STEP", unsupported(unsupported::SFC));
+        check("a.sfc", "INITIAL_STEP X0 : END_STEP", Detected::Pasted(Pl7Text::Sfc));
+        check("a.sfc", "<svg/>", Detected::NotPlc);
+    }
+
+    #[test]
+    fn charts() {
+        let page = "NB_PAGES = 8\nPAGE 0\nINITIAL_STEP 0 AT (C 4,L 1) :\nEND_STEP\nTRANSITION (ST) AT (C 4,L 2) :\n\
+                    (*PHRASE*) %I1.0 (*END_PHRASE*)\nEND_TRANSITION\nEND_PAGE\n";
+        let textual = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); END_STEP\n\
+                       TRANSITION FROM X0 TO X1 := %I1.0 AND NOT %M3; END_TRANSITION\n\
+                       ACTION Fill : %Q2.0 := TRUE; END_ACTION\n";
+        for path in ["a.txt", "a.gr7", "a.st", "a.sfc"] {
+            check(path, page, Detected::Pasted(Pl7Text::Gr7));
+            check(path, textual, Detected::Pasted(Pl7Text::Sfc));
+        }
+        check("a.txt", "Step 1: open the valve\nStep 2: close it\nAction: none\n", Detected::NotPlc);
     }
 
     #[test]
@@ -931,7 +1048,7 @@ mod tests {
             ("a.stl", Detected::NotPlc),
             ("a.txt", Detected::NotPlc),
             ("a.db", Detected::NotPlc),
-            ("a.stx", unsupported(unsupported::PROJECT)),
+            ("a.stx", Detected::Unreadable { why: stx::DAMAGED }),
             ("a.ufb", unsupported(unsupported::ENCRYPTED)),
             ("a.zef", unsupported(unsupported::CONTROL_EXPERT)),
         ] {

@@ -7,12 +7,14 @@
 //! **Invariant:** nothing here fails: bytes of every kind have a text, texts of every kind have units, and the units
 //! tile the text.
 
+mod dbf;
 pub mod decode;
 pub mod detect;
 mod heading;
 pub mod line_index;
 mod scan;
 pub mod split;
+pub mod stx;
 pub mod walk;
 
 pub use heading::entity_from_address;

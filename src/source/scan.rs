@@ -40,6 +40,11 @@ impl<'t> Lines<'t> {
         Self { text, pos: 0, dialect }
     }
 
+    /// Goes on at an offset, outside of comments: the start of a line.
+    pub(super) fn skip_to(&mut self, offset: usize) {
+        self.pos = offset;
+    }
+
     /// The end of the line that contains `from`, which is outside of comments, and its first `(*`.
     fn plain_line(&self, from: usize) -> (usize, Option<usize>) {
         let bytes = self.text.as_bytes();

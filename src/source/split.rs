@@ -10,7 +10,7 @@ use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::detect::{Detected, Pl7Text, pl7_text, pl7_unsupported, unsupported};
+use super::detect::{Detected, Pl7Text, pl7_text, unsupported};
 use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_address, pl7_heading,
     strip_prefix_ignore_case, word,
@@ -49,6 +49,7 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::Step7 => step7(&mut units, hint),
         Detected::Pasted(default) => pasted(&mut units, default, hint),
         Detected::Exchange => exchange(&mut units),
+        Detected::Stx => project(&mut units),
         Detected::Pl72 => pl7_2(&mut units, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
             units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
@@ -56,6 +57,91 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::NotPlc => units.push(0, Draft { unsupported: Some("not a PLC program"), ..Draft::container() }),
     }
     units.finish()
+}
+
+/// What [`split`] makes of `new`, found without reading all of it: an edit inside of one unit leaves the cuts around it
+/// where they are. `None` when that is not sure; `spans` is what [`split`] made of `old`.
+///
+/// The edited unit is cut again together with the next one, whose text is the same: where both come out as they were,
+/// the text behind them starts in the same state as before.
+pub fn resplit(
+    old: &str,
+    spans: &[UnitSpan],
+    new: &str,
+    detected: Detected,
+    hint: &SplitHint,
+) -> Option<Vec<UnitSpan>> {
+    let is_own = |it: &UnitSpan| match detected {
+        Detected::Step7 => matches!(it.entity, Entity::Block { .. }),
+        Detected::Pasted(_) => true,
+        _ => false,
+    };
+    let changed = common_start(old.as_bytes(), new.as_bytes());
+    let changed_end = old.len() - common_end(&old.as_bytes()[changed..], &new.as_bytes()[changed..]);
+    let start = |it: &UnitSpan| usize::from(it.range.start());
+    let end = |it: &UnitSpan| usize::from(it.range.end());
+    let at = spans.partition_point(|it| end(it) <= changed).min(spans.len().checked_sub(1)?);
+    let (unit, next) = (&spans[at], spans.get(at + 1));
+    // Of a unit that starts within a line, the blanks before it are the one's before.
+    let starts_line = at == 0 || old[..start(unit)].ends_with(['\n', '\r']);
+    if changed_end > end(unit) || !starts_line || !is_own(unit) || next.is_some_and(|it| !is_own(it)) {
+        return None;
+    }
+    let moved = |offset: usize| (offset + new.len()).checked_sub(old.len());
+    let part = new.get(start(unit)..moved(next.map_or(end(unit), end))?)?;
+    let mut hint = hint.clone();
+    if let (Detected::Step7, Language::Awl(before)) = (detected, unit.language) {
+        if hint.mnemonics.is_none() && mnemonics(new) != before {
+            return None;
+        }
+        hint.mnemonics = Some(before);
+    }
+    let cut = split(part, detected, &hint);
+    let same =
+        |a: &UnitSpan, b: &UnitSpan| a.entity == b.entity && a.language == b.language && a.unsupported == b.unsupported;
+    let expected: Vec<&UnitSpan> = [unit].into_iter().chain(next).collect();
+    let is_same = cut.len() == expected.len() && cut.iter().zip(expected).all(|(a, b)| same(a, b));
+    // Without a heading of its own, only the first unit is what the hint says.
+    let is_named = at == 0 || heading_of(part, detected);
+    let border = moved(end(unit))?;
+    if !is_same || !is_named || cut.first().is_none_or(|it| start(unit) + end(it) != border) {
+        return None;
+    }
+    let offset = |at: usize| TextSize::try_from(at).ok();
+    let mut result = spans[..at].to_vec();
+    result.push(UnitSpan { range: TextRange::new(unit.range.start(), offset(border)?), ..unit.clone() });
+    for it in &spans[at + 1..] {
+        result.push(UnitSpan {
+            range: TextRange::new(offset(moved(start(it))?)?, offset(moved(end(it))?)?),
+            ..it.clone()
+        });
+    }
+    Some(result)
+}
+
+/// Number of bytes that two texts begin with, in strides that the processor compares at once.
+fn common_start(a: &[u8], b: &[u8]) -> usize {
+    const STRIDE: usize = 256;
+    let strides = a.chunks_exact(STRIDE).zip(b.chunks_exact(STRIDE)).take_while(|it| it.0 == it.1).count();
+    let at = strides * STRIDE;
+    at + a[at..].iter().zip(&b[at..]).take_while(|it| it.0 == it.1).count()
+}
+
+fn common_end(a: &[u8], b: &[u8]) -> usize {
+    const STRIDE: usize = 256;
+    let strides = a.rchunks_exact(STRIDE).zip(b.rchunks_exact(STRIDE)).take_while(|it| it.0 == it.1).count();
+    let (a, b) = (&a[..a.len() - strides * STRIDE], &b[..b.len() - strides * STRIDE]);
+    strides * STRIDE + a.iter().rev().zip(b.iter().rev()).take_while(|it| it.0 == it.1).count()
+}
+
+/// Whether the first line of code in a unit's text is what names the unit.
+fn heading_of(part: &str, detected: Detected) -> bool {
+    let comments = if detected == Detected::Step7 { Comments::Step7 } else { Comments::Pl7 };
+    let mut codes = Lines::new(part, comments).map(|it| it.code).filter(|it| !it.is_empty() && !it.starts_with("//"));
+    codes.next().is_some_and(|it| match detected {
+        Detected::Step7 => block_header(it).is_some(),
+        _ => pl7_heading(it).is_some(),
+    })
 }
 
 /// A unit whose end is not known yet.
@@ -92,6 +178,25 @@ struct Units<'t> {
 }
 
 impl Units<'_> {
+    /// A page of the chart that the last draft belongs to: the draft itself when it has no page yet. `pages` counts them.
+    fn page(&mut self, page: u32, pages: &mut u32) {
+        *pages += 1;
+        let at = self.code_end;
+        let Some(last) = self.drafts.last_mut() else { return };
+        if *pages == 1 {
+            name_page(&mut last.entity, page);
+        } else {
+            let mut draft = last.clone();
+            name_page(&mut draft.entity, page);
+            self.push(at, draft);
+        }
+    }
+
+    /// Whether the last draft is of a chart.
+    fn in_chart(&self) -> bool {
+        self.drafts.last().is_some_and(|it| it.language == Some(Language::Pl7Gr7))
+    }
+
     fn push(&mut self, start: usize, draft: Draft) {
         self.drafts.push(Draft { start, ..draft });
     }
@@ -108,8 +213,7 @@ impl Units<'_> {
                 Some(language) => (language, draft.unsupported),
                 None => {
                     let text = self.text.get(draft.start..end).unwrap_or_default();
-                    let form = draft.unsupported.or_else(|| pl7_unsupported(text));
-                    (if form.is_some() { Language::Exchange } else { pl7_language(pl7_text(text)) }, form)
+                    (pl7_language(pl7_text(text)), draft.unsupported)
                 }
             };
             UnitSpan {
@@ -152,6 +256,30 @@ fn pl7_language(text: Pl7Text) -> Language {
     match text {
         Pl7Text::Il => Language::Pl7Il,
         Pl7Text::St => Language::Pl7St,
+        Pl7Text::Ld => Language::Pl7Ld,
+        Pl7Text::Gr7 => Language::Pl7Gr7,
+        Pl7Text::Sfc => Language::Sfc,
+    }
+}
+
+/// `PAGE 3`, the line that starts a page of a chart: its number.
+fn page_line(code: &str) -> Option<u32> {
+    if !code.starts_with(['P', 'p']) {
+        return None;
+    }
+    let (first, rest) = word(code);
+    let number = word(rest.trim_start()).0;
+    first.eq_ignore_ascii_case("PAGE").then(|| number.parse().ok())?
+}
+
+/// Names a unit of a chart after its page.
+fn name_page(entity: &mut Entity, page: u32) {
+    if let Entity::Pl7 { part: part @ (Part::Chart(_) | Part::Main), .. } = entity {
+        let graph = match &*part {
+            Part::Chart(rest) => rest.split(' ').next().filter(|it| !it.is_empty()).unwrap_or("CHART").to_owned(),
+            _ => "CHART".to_owned(),
+        };
+        *part = Part::Chart(format_smolstr!("{graph} - PAGE {page}"));
     }
 }
 
@@ -227,9 +355,12 @@ fn mnemonics(text: &str) -> Mnemonics {
 /// PL7 as it is pasted in documents: headings, and code before the first one.
 fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
     let unnamed = || {
-        let main = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let is_chart = matches!(default, Pl7Text::Gr7 | Pl7Text::Sfc);
+        let part = if is_chart { Part::Chart("CHART".into()) } else { Part::Main };
+        let main = Entity::Pl7 { task: Task::Mast, section: None, part };
         Draft::new(hint.entity.clone().unwrap_or(main), Some(pl7_language(default)))
     };
+    let mut pages = 0;
     for line in Lines::new(units.text, Comments::Pl7) {
         if line.code.is_empty() {
             continue;
@@ -239,12 +370,18 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
                 _ if heading.pl7_2 => (Language::Exchange, Some(unsupported::PL7_2)),
                 HeadingLanguage::Il => (Language::Pl7Il, None),
                 HeadingLanguage::St => (Language::Pl7St, None),
-                HeadingLanguage::Ladder => (Language::Exchange, Some(unsupported::LADDER)),
-                HeadingLanguage::Grafcet => (Language::Exchange, Some(unsupported::GRAFCET)),
+                HeadingLanguage::Ladder => (Language::Pl7Ld, None),
+                HeadingLanguage::Grafcet => (Language::Pl7Gr7, None),
             };
             units.push(units.code_end, Draft { unsupported, ..Draft::new(heading.entity, Some(language)) });
+            pages = 0;
         } else if units.drafts.is_empty() {
             units.push(0, unnamed());
+        }
+        if units.in_chart()
+            && let Some(page) = page_line(line.code)
+        {
+            units.page(page, &mut pages);
         }
         units.code_end = line.end;
     }
@@ -287,16 +424,23 @@ fn exchange(units: &mut Units<'_>) {
     }
     let mut state = State::Ended;
     let mut keys = SourceUnit::default();
-    for line in Lines::new(units.text, Comments::Pl7) {
+    let mut pages = 0;
+    let mut lines = Lines::new(units.text, Comments::Pl7);
+    while let Some(line) = lines.next() {
         if line.code.is_empty() {
             continue;
         }
         let mut code = line.code;
         if let Some((block, rest)) = exchange_block(code) {
-            let unsupported = (block == "[DATA_UNIT]").then_some(unsupported::VARIABLES);
-            units.push(units.code_end, Draft { label: Some(block.into()), unsupported, ..Draft::container() });
+            units.push(units.code_end, Draft { label: Some(block.into()), ..Draft::container() });
             keys = SourceUnit::default();
             state = if block == "[SOURCE_UNIT]" { State::Keys } else { State::Other };
+            if block == "[VENDOR]" {
+                // What looks like a comment in there need not be one.
+                units.code_end = next_block(units.text, line.code_start + line.code.len());
+                lines.skip_to(units.code_end);
+                continue;
+            }
             code = rest;
         } else if state == State::Ended {
             units.push(units.code_end, Draft::container());
@@ -313,9 +457,15 @@ fn exchange(units: &mut Units<'_>) {
                     let start = if at == line.code_start { units.code_end } else { at };
                     units.push(start, draft);
                     state = State::Program;
+                    pages = 0;
                 }
             }
             State::Program if ends_program(code) => state = State::Ended,
+            State::Program if units.in_chart() => {
+                if let Some(page) = page_line(code) {
+                    units.page(page, &mut pages);
+                }
+            }
             _ => {}
         }
         units.code_end = line.end;
@@ -323,6 +473,51 @@ fn exchange(units: &mut Units<'_>) {
     if units.drafts.is_empty() {
         units.push(0, Draft::container());
     }
+}
+
+/// Start of the first line after an offset that begins a block; the end of the text without one.
+fn next_block(text: &str, from: usize) -> usize {
+    let mut at = from;
+    for line in text.get(from..).unwrap_or_default().split_inclusive(['\n', '\r']) {
+        if at > from && exchange_block(line.trim_start()).is_some() {
+            return at;
+        }
+        at += line.len();
+    }
+    text.len()
+}
+
+/// The listing of a PL7 project: blocks in brackets, of which those of the cross-reference name what they belong to.
+fn project(units: &mut Units<'_>) {
+    let mut start = 0;
+    for line in units.text.split_inclusive('\n') {
+        let code = line.trim_end();
+        if let Some(address) = code.strip_prefix("[XREF] ") {
+            units.push(start, Draft::new(project_entity(address), Some(Language::Pl7Xref)));
+        } else if code.starts_with('[') || start == 0 {
+            let label = (!code.is_empty()).then(|| code.into());
+            units.push(start, Draft { label, ..Draft::container() });
+        }
+        start += line.len();
+    }
+    if units.drafts.is_empty() {
+        units.push(0, Draft::container());
+    }
+}
+
+/// `MAST - module 0`, `MAST - CHART - PAGE 0 %X1`, `task 516 - SR3`.
+fn project_entity(address: &str) -> Entity {
+    if let Some(entity) = pl7_address(address) {
+        return entity;
+    }
+    let (task, rest) = address.split_once(" - ").unwrap_or((address, ""));
+    let named = pl7_address(task).and_then(|it| it.task());
+    let number = task.strip_prefix("task ").and_then(|it| it.parse().ok());
+    let task = named.or(number.map(Task::Numbered)).unwrap_or(Task::Mast);
+    if rest.starts_with("CHART") {
+        return Entity::Pl7 { task, section: None, part: Part::Chart(rest.into()) };
+    }
+    Entity::Pl7 { task, section: Some(rest.into()), part: Part::Main }
 }
 
 fn ends_program(code: &str) -> bool {
@@ -402,8 +597,11 @@ impl<'t> SourceUnit<'t> {
         let (language, unsupported) = match (language.as_str(), program_language.as_str()) {
             ("IL", _) => (Some(Language::Pl7Il), None),
             ("ST", _) => (Some(Language::Pl7St), None),
-            ("LD", _) => (Some(Language::Exchange), Some(unsupported::LADDER)),
-            (_, "GR7") | ("GR7", _) => (Some(Language::Exchange), Some(unsupported::GRAFCET)),
+            ("LD", _) => (Some(Language::Pl7Ld), None),
+            (_, "GR7") | ("GR7", _) => (Some(Language::Pl7Gr7), None),
+            ("" | "OTHERS", "") if matches!(entity, Entity::Pl7 { part: Part::Chart(_), .. }) => {
+                (Some(Language::Pl7Gr7), None)
+            }
             ("", _) => (None, None),
             _ => (Some(Language::Exchange), Some(unsupported::OTHER_LANGUAGE)),
         };
@@ -478,7 +676,9 @@ mod tests {
 
     const GERMAN: Language = Language::Awl(Mnemonics::German);
     const ST: Language = Language::Pl7St;
+    const LD: Language = Language::Pl7Ld;
     const IL: Language = Language::Pl7Il;
+    const GR7: Language = Language::Pl7Gr7;
     const KEYS: Language = Language::Exchange;
 
     /// Keys, languages and texts of the units, the form of unsupported ones instead of their language.
@@ -608,14 +808,14 @@ mod tests {
                     ST,
                     "ST : MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)\n%M1\n",
                 ),
-                ("FAST - MAIN", KEYS, "LD : FAST - MAIN\nRUNG\n"),
+                ("FAST - MAIN", LD, "LD : FAST - MAIN\nRUNG\n"),
                 ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
                 ("MAST - PRL", KEYS, "ST : PL7-2 - PRL\n"),
-                ("MAST - Peinture - CHART", KEYS, "GR7 : MAST - Peinture - CHART\n"),
+                ("MAST - Peinture - CHART", GR7, "GR7 : MAST - Peinture - CHART\n"),
             ],
         );
-        use super::unsupported::{GRAFCET, LADDER, PL7_2};
-        let expected = [None, None, None, None, Some(LADDER), Some(PL7_2), Some(PL7_2), Some(GRAFCET)];
+        use super::unsupported::PL7_2;
+        let expected = [None, None, None, None, None, Some(PL7_2), Some(PL7_2), None];
         assert_eq!(unsupported(&units), expected);
     }
 
@@ -669,12 +869,12 @@ mod tests {
                 ("[EOF]", KEYS, "[EOF]\n"),
             ],
         );
-        assert_eq!(units[6].unsupported, Some(unsupported::VARIABLES));
+        assert_eq!(unsupported(&units), [None; 8]);
     }
 
     #[test]
     fn programs_of_exchange_files() {
-        use super::unsupported::{DFB, GRAFCET, LADDER, OTHER_LANGUAGE};
+        use super::unsupported::{DFB, OTHER_LANGUAGE};
         for (keys, program, expected, language, form) in [
             ("ADDRESS = MAST SR1", "PROGRAM", "MAST - SR1", ST, None),
             ("NAME = 'FAST_MAIN' LANGUAGE = IL ADDRESS = FAST MAIN", "PROGRAM", "FAST - MAIN", IL, None),
@@ -685,12 +885,14 @@ mod tests {
                 "LANGUAGE = OTHERS ADDRESS = MAST Chart PROG_LANGAGE = GR7 NAME = 'MAST_Chart'",
                 "PROGRAM MAST 'Chart'",
                 "MAST - CHART",
-                KEYS,
-                Some(GRAFCET),
+                GR7,
+                None,
             ),
-            ("LANGUAGE = OTHERS", "PROGRAMMAST'Chart'", "MAST - CHART", KEYS, Some(OTHER_LANGUAGE)),
-            ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", KEYS, Some(LADDER)),
-            ("NAME = 'x'", "PROGRAM\nRUNG", "MAST - x", KEYS, Some(LADDER)),
+            ("LANGUAGE = OTHERS", "PROGRAMMAST'Chart'", "MAST - CHART", GR7, None),
+            ("LANGUAGE = OTHERS", "PROGRAM", "MAST - MAIN", KEYS, Some(OTHER_LANGUAGE)),
+            ("ADDRESS = MAST MACRO2", "PROGRAM", "MAST - MACRO2", GR7, None),
+            ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", LD, None),
+            ("NAME = 'x'", "PROGRAM\nRUNG\nH_LINK(10),COIL(%M0);\nEND_RUNG", "MAST - x", LD, None),
             ("NAME = 'x'", "PROGRAM\n LD %M0\n ST %M1", "MAST - x", IL, None),
             ("NAME = 'x'", "FUNCTION_BLOCK Cpt", "FUNCTION_BLOCK Cpt", KEYS, Some(DFB)),
             ("PROGRAM = x ADDRESS = nonsense", "PROGRAM", "MAST - MAIN", ST, None),
@@ -702,6 +904,42 @@ mod tests {
             assert_eq!((unit.key.as_str(), unit.language, unit.unsupported), (expected, language, form), "{keys}");
             assert!(text[unit.range].starts_with(program), "{keys}");
         }
+    }
+
+    /// An edit in one page re-parses that page.
+    #[test]
+    fn pages_are_units() {
+        check(
+            Detected::Exchange,
+            "[SOURCE_UNIT]\nNAME='Peinture_Chart' ADDRESS=MAST Chart PROG_LANGAGE=GR7\nPROGRAM MAST 'Chart'\nNB_PAGES = 8\n\
+             PAGE 0\nSTEP 0 AT (C 0,L 1) :\nEND_STEP\nEND_PAGE\n(* next *)\nPAGE 1\nEND_PAGE\nEND_PROGRAM\n[EOF]\n",
+            &[
+                (
+                    "[SOURCE_UNIT] MAST - Peinture - CHART",
+                    KEYS,
+                    "[SOURCE_UNIT]\nNAME='Peinture_Chart' ADDRESS=MAST Chart PROG_LANGAGE=GR7\n",
+                ),
+                (
+                    "MAST - Peinture - CHART - PAGE 0",
+                    GR7,
+                    "PROGRAM MAST 'Chart'\nNB_PAGES = 8\nPAGE 0\nSTEP 0 AT (C 0,L 1) :\nEND_STEP\nEND_PAGE\n",
+                ),
+                ("MAST - Peinture - CHART - PAGE 1", GR7, "(* next *)\nPAGE 1\nEND_PAGE\nEND_PROGRAM\n"),
+                ("[EOF]", KEYS, "[EOF]\n"),
+            ],
+        );
+        check(
+            Detected::Pasted(Pl7Text::St),
+            "GR7 : MAST - Peinture - CHART\nPAGE 0\nPAGE 0\nGR7 : MAST - Peinture - MACRO2\nPAGE 3\nST : MAST - SR1\nPAGE 1\n",
+            &[
+                ("MAST - Peinture - CHART - PAGE 0", GR7, "GR7 : MAST - Peinture - CHART\nPAGE 0\n"),
+                ("MAST - Peinture - CHART - PAGE 0#2", GR7, "PAGE 0\n"),
+                ("MAST - Peinture - MACRO2 - PAGE 3", GR7, "GR7 : MAST - Peinture - MACRO2\nPAGE 3\n"),
+                ("MAST - SR1", ST, "ST : MAST - SR1\nPAGE 1\n"),
+            ],
+        );
+        check(Detected::Pasted(Pl7Text::Gr7), "PAGE 2\n", &[("MAST - CHART - PAGE 2", GR7, "PAGE 2\n")]);
+        check(Detected::Pasted(Pl7Text::Sfc), "STEP A:", &[("MAST - CHART", Language::Sfc, "STEP A:")]);
     }
 
     #[test]
@@ -763,7 +1001,69 @@ mod tests {
         TYPE UDT 1|Bloc FC[12] :|// |\\(\\*|\\*\\)|['\"]|TITLE =|ST : MAST - SR[12]|LD : EVT1|IL : MAST - A - PRL|\
         \\[SOURCE_UNIT\\]|\\[EOF\\]|\\[HEADER|PROGRAM|END_PROGRAM|NAME = 'MAST_|ADDRESS=|LANGUAGE=|LD %M0|RUNG|%M0 := 1;";
 
+    const EDITED: [(&str, Detected); 2] = [
+        (
+            "// head\nFUNCTION FC 1 : VOID\nBEGIN\n U E 0.0 // a (* b\n = A 4.0\nEND_FUNCTION\n\n// of FB 1\nFUNCTION_BLOCK \
+             FB 1\nVAR\n x : INT;\nEND_VAR\nBEGIN\n(* two\n lines *) U E 0.1; = A 0.1\nEND_FUNCTION_BLOCK DATA_BLOCK DB 1 \
+             FB 1\nBEGIN\nEND_DATA_BLOCK\nFUNCTION FC 1 : VOID\nBEGIN\nBE\nEND_FUNCTION\n",
+            Detected::Step7,
+        ),
+        (
+            "! %M0 := %M1; (* c *)\nST : MAST - SR1\n! (* d\n e *) %M2 := %M3;\n\n(* of SR2 *)\nIL : MAST - SR2\n! LD %M4\n \
+             ST %M5\nST : MAST - SR1\n! %M6 := 'a';\nLD : MAST - SR4\nRUNG END_RUNG\nST : EVT3\n! %M7:=%M8;",
+            Detected::Pasted(Pl7Text::St),
+        ),
+    ];
+
+    const SNIPPETS: [&str; 17] = [
+        "",
+        "\n",
+        " ",
+        "(*",
+        "*)",
+        "//",
+        "'",
+        "x",
+        "U E 0.5\n",
+        "END_FUNCTION\n",
+        "FUNCTION FC 7 : VOID\n",
+        "TYPE UDT 3\n",
+        "ST : MAST - SR1\n",
+        "IL : MAST - SR9\n",
+        "! %M0:=%M1;\n",
+        "NETWORK\nTITLE = (* x\n",
+        "A I 0.0\nA I 0.1\n",
+    ];
+
+    /// An edit inside of a unit takes the short way.
+    #[test]
+    fn short_way() {
+        for (text, detected) in EDITED {
+            let spans = split(text, detected, &SplitHint::default());
+            let at = text.find(if detected == Detected::Step7 { "E 0.1" } else { "%M3" }).expect("a place");
+            let edited = format!("{}9{}", &text[..at + 2], &text[at + 2..]);
+            let found = resplit(text, &spans, &edited, detected, &SplitHint::default());
+            assert_eq!(found, Some(split(&edited, detected, &SplitHint::default())));
+        }
+    }
+
     proptest! {
+        #[test]
+        fn an_edit_is_cut_as_the_whole_would_be(
+            which in 0..EDITED.len(),
+            from in 0..400_usize,
+            length in 0..40_usize,
+            snippet in 0..SNIPPETS.len(),
+        ) {
+            let (text, detected) = EDITED[which];
+            let (from, to) = (from.min(text.len()), (from + length).min(text.len()));
+            let edited = format!("{}{}{}", &text[..from], SNIPPETS[snippet], &text[to..]);
+            let spans = split(text, detected, &SplitHint::default());
+            if let Some(found) = resplit(text, &spans, &edited, detected, &SplitHint::default()) {
+                prop_assert_eq!(found, split(&edited, detected, &SplitHint::default()));
+            }
+        }
+
         #[test]
         fn units_tile_any_text(pieces in prop::collection::vec(PIECES, 0..24)) {
             let text = pieces.concat();

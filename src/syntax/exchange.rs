@@ -27,6 +27,9 @@ enum Lexeme {
     Ident,
     #[regex(r"[0-9][0-9_]*(\.[0-9]+)?")]
     Number,
+    // A symbol cannot begin with a digit (PL7:1213); who declares one so shall be told.
+    #[regex(r"[0-9][0-9_]*[A-Za-z_\u{AA}-\u{2AF}][A-Za-z0-9_\u{AA}-\u{52F}]*")]
+    DigitWord,
     #[regex(r"[A-Za-z0-9_]+#[0-9A-Za-z_.:\-]+")]
     TypedConstant,
     #[regex(r"'[^'\r\n]*'?")]
@@ -55,7 +58,7 @@ impl From<Lexeme> for SyntaxKind {
             Lexeme::Comment => Comment,
             Lexeme::UnclosedComment => Self::UnclosedComment,
             Lexeme::BlockMark => BlockMark,
-            Lexeme::Ident => Ident,
+            Lexeme::Ident | Lexeme::DigitWord => Ident,
             Lexeme::Number => Self::Number,
             Lexeme::TypedConstant => Self::TypedConstant,
             Lexeme::CharString => CharString,
@@ -129,12 +132,7 @@ pub fn parse(text: &str) -> Parse {
     let mut p = Parser::new(text, &tokens);
     while !p.at_end() {
         if p.at(BlockMark) {
-            let m = p.start();
-            p.bump();
-            while !p.at_end() && !p.at(BlockMark) {
-                item(&mut p);
-            }
-            p.complete(m, ExchangeBlock);
+            block(&mut p);
         } else {
             item(&mut p);
         }
@@ -142,15 +140,64 @@ pub fn parse(text: &str) -> Parse {
     p.finish()
 }
 
+fn block(p: &mut Parser<'_>) {
+    let m = p.start();
+    // The configuration: its content is not published.
+    let is_private = p.at_text("[VENDOR]");
+    p.bump();
+    if is_private {
+        unread(p, |p| p.at(BlockMark));
+    }
+    while !p.at_end() && !p.at(BlockMark) {
+        item(p);
+    }
+    p.complete(m, ExchangeBlock);
+}
+
+/// Keeps tokens that mean nothing to us, up to one where `stop` holds. They are no mistake of the file.
+fn unread(p: &mut Parser<'_>, stop: impl Fn(&Parser<'_>) -> bool) {
+    if p.at_end() || stop(p) {
+        return;
+    }
+    let m = p.start();
+    while !p.at_end() && !stop(p) {
+        p.bump();
+    }
+    p.complete(m, SyntaxKind::Error);
+}
+
+fn at_item(p: &Parser<'_>) -> bool {
+    p.at(BlockMark) || at_key(p) || at_var_section(p) || at_declaration(p)
+}
+
+fn at_key(p: &Parser<'_>) -> bool {
+    p.at(Ident) && p.nth(1) == Some(Eq)
+}
+
+fn at_var_section(p: &Parser<'_>) -> bool {
+    const SECTIONS: [&str; 9] = [
+        "VAR",
+        "VAR_GLOBAL",
+        "VAR_EXTERNAL",
+        "VAR_INPUT",
+        "VAR_OUTPUT",
+        "VAR_IN_OUT",
+        "VAR_PUBLIC",
+        "VAR_PRIVATE",
+        "VAR_TEMP",
+    ];
+    p.at(Ident) && SECTIONS.iter().any(|it| p.at_text(it)) && p.nth(1) != Some(Colon) && name_length(p) != Some(1)
+}
+
 fn item(p: &mut Parser<'_>) {
-    if p.at(Ident) && p.nth(1) == Some(Eq) {
+    if at_key(p) {
         key_value(p);
-    } else if p.at(Ident) && p.current_text().get(..3).is_some_and(|it| it.eq_ignore_ascii_case("VAR")) {
+    } else if at_var_section(p) {
         var_section(p);
     } else if at_declaration(p) {
         declaration(p);
     } else {
-        p.bump();
+        unread(p, at_item);
     }
 }
 
@@ -176,28 +223,53 @@ fn var_section(p: &mut Parser<'_>) {
         }
         if at_declaration(p) {
             declaration(p);
-        } else {
-            p.bump();
+        } else if !p.eat(Semicolon) {
+            unread(p, |p| p.at(BlockMark) || p.at(Semicolon) || p.at_text("END_VAR") || at_declaration(p));
         }
     }
     p.complete(m, VarSection);
 }
 
+/// Tokens that a name with characters which no name has may consist of.
+const LONGEST_NAME: usize = 8;
+
 /// `Pump AT %M0 : EBOOL`, and an instance of a DFB, which has no address: `Cpt_vis : Cpt_pieces`.
 fn at_declaration(p: &Parser<'_>) -> bool {
-    p.at(Ident)
-        && (p.nth(1) == Some(Colon)
-            || (p.nth(1) == Some(Ident) && p.nth_text(1).eq_ignore_ascii_case("AT") && p.nth(2) == Some(ObjectAddress)))
+    p.at(Ident) && p.nth(1) == Some(Colon) || name_length(p).is_some()
+}
+
+/// How many tokens stand before `AT %M0`. More than one when the name is none, such as `Pump-1`.
+fn name_length(p: &Parser<'_>) -> Option<usize> {
+    let ends = |at: usize| {
+        p.nth(at) == Some(Ident) && p.nth_text(at).eq_ignore_ascii_case("AT") && p.nth(at + 1) == Some(ObjectAddress)
+    };
+    for at in 0..LONGEST_NAME {
+        if at > 0 && ends(at) {
+            return Some(at);
+        }
+        let inside = !matches!(p.nth(at)?, Semicolon | Colon | Eq | SyntaxKind::Assign | BlockMark | ObjectAddress);
+        if !inside || at > 0 && p.nth_newline_before(at) {
+            return None;
+        }
+    }
+    None
 }
 
 fn declaration(p: &mut Parser<'_>) {
     let m = p.start();
-    wrap(p, VarName);
-    if p.at(Ident) {
+    let name = p.start();
+    let length = name_length(p);
+    for _ in 0..length.unwrap_or(1) {
         p.bump();
-        wrap(p, ObjectRef);
     }
-    if p.eat(Colon) && p.at(Ident) && !at_declaration(p) {
+    p.complete(name, VarName);
+    if length.is_some() {
+        p.bump();
+        let address = p.start();
+        p.bump();
+        p.complete(address, ObjectRef);
+    }
+    if p.eat(Colon) && p.at(Ident) && !at_next(p) {
         let kind = p.start();
         p.bump();
         while !at_end_of_declaration(p) && !p.at(SyntaxKind::Assign) {
@@ -218,13 +290,14 @@ fn declaration(p: &mut Parser<'_>) {
 }
 
 fn at_end_of_declaration(p: &Parser<'_>) -> bool {
-    p.at_end() || p.at(Semicolon) || p.at(BlockMark) || p.at_text("END_VAR") || at_declaration(p)
+    p.at_end() || p.at(Semicolon) || p.at(BlockMark) || p.at_text("END_VAR") || at_next(p)
 }
 
-fn wrap(p: &mut Parser<'_>, kind: SyntaxKind) {
-    let m = p.start();
-    p.bump();
-    p.complete(m, kind);
+/// Whether a declaration begins though the one before lacks its semicolon: what may belong to that one does.
+fn at_next(p: &Parser<'_>) -> bool {
+    // `AR_W:20` is a type.
+    let is_instance = p.nth(1) == Some(Colon) && p.nth(2) != Some(SyntaxKind::Number);
+    p.at(Ident) && (is_instance || name_length(p) == Some(1))
 }
 
 /// `[SOURCE_UNIT]` and what belongs to it.

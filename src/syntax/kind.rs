@@ -160,10 +160,47 @@ kinds! {
     /// A symbol, with an optional `.item`.
     NameRef,
     Index,
+    /// `RUNG ... END_RUNG`.
+    Rung,
+    /// One row of a rung, with its `;`.
+    RungRow,
+    /// `OPEN_CONTACT(%I1.0)`, `COMPARE ... END_BLOCK`.
+    Cell,
+
+    // Chart nodes: pages of Grafcet and textual SFC.
+    /// `NB_PAGES = 8`.
+    PageCount,
+    /// `PAGE 0 ... END_PAGE`.
+    Page,
+    /// `STEP 3 AT (C 4,L 3) : ... END_STEP` and the other kinds of steps.
+    ChartStep,
+    /// Number or name of a step.
+    StepName,
+    /// `ACTION (N1,LD) : ... END_ACTION`, `ACTION Fill : ... END_ACTION`.
+    ChartAction,
+    /// `Fill(N);` in a step.
+    Association,
+    Transition,
+    /// The steps before or after a transition: `FROM (X1,X2)`, `TO X3`.
+    TransitionEnd,
+    /// `T_S_OR_LINK FROM (C 4,L 4) TO (C 4,L 3) := [...]`.
+    ChartLink,
+    /// `H_LINK FROM (C 4,L 4) TO (C 5,L 4)` in a link.
+    Segment,
+    Connector,
+    ChartComment,
+    /// `(C 4,L 3)`.
+    PageCell,
 
     // Exchange container nodes.
     ExchangeBlock,
     KeyValue,
+
+    // Cross-reference nodes.
+    /// `@20`: the place in a module that the entries below stand in.
+    XrefPlace,
+    /// `%M10 W`.
+    XrefEntry,
 }
 
 impl SyntaxKind {

@@ -13,6 +13,7 @@ pub mod awl;
 pub mod exchange;
 pub mod pl7;
 pub mod pl72;
+pub mod xref;
 
 pub use kind::SyntaxKind;
 pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
@@ -36,8 +37,23 @@ pub enum Language {
     Pl7Il,
     /// PL7 structured text.
     Pl7St,
+    /// PL7 ladder, as exchange files write it.
+    Pl7Ld,
+    /// PL7 Grafcet: a page of a chart in the exchange form, with the code of its actions and receptivities.
+    Pl7Gr7,
+    /// IEC 61131-3 sequential function chart as text, with PL7 code.
+    Sfc,
     /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
     Exchange,
+    /// The cross-reference of a PL7 project whose code is not readable.
+    Pl7Xref,
+}
+
+impl Language {
+    /// Whether the text is a chart, which holds code of other languages.
+    pub fn is_chart(self) -> bool {
+        matches!(self, Self::Pl7Gr7 | Self::Sfc)
+    }
 }
 
 /// Parses one unit. Total and linear for every text.
@@ -46,7 +62,10 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Awl(mnemonics) => awl::parse(text, mnemonics),
         Language::Pl7Il => pl7::parse_il(text),
         Language::Pl7St => pl7::parse_st(text),
+        Language::Pl7Gr7 | Language::Sfc => pl7::parse_chart(text),
+        Language::Pl7Ld => pl7::parse_ld(text),
         Language::Exchange => exchange::parse(text),
+        Language::Pl7Xref => xref::parse(text),
     }
 }
 

@@ -105,6 +105,19 @@ impl Target {
         Self { family, controller: None, counts: Counts::default() }
     }
 
+    /// The PL7 processor that a project names: `TSX 57103`. One that no table has counts as one of its series.
+    pub fn of_project(name: &str) -> Option<Self> {
+        let key = key(name);
+        let exact = pl7::PROCESSORS.iter().find(|it| self::key(it.name) == key);
+        let series = || {
+            let of_micro = key.starts_with("TSX37");
+            let of_premium = ["TSX57", "PCX57", "PMX57"].iter().any(|it| key.starts_with(it));
+            let name = if of_micro { "TSX 37" } else { "TSX 57" };
+            pl7::PROCESSORS.iter().find(|it| (of_micro || of_premium) && it.name == name)
+        };
+        exact.or_else(series).map(Self::pl7)
+    }
+
     fn pl7(processor: &'static pl7::Processor) -> Self {
         Self { controller: Some(Controller::Pl7(processor)), ..Self::any(Family::Pl7) }
     }
@@ -235,6 +248,23 @@ impl Target {
     pub fn chart(&self) -> Option<pl7::ChartLimits> {
         let largest = (self.family == Family::Pl7).then_some(pl7::CHART_LARGEST);
         self.processor().map(|it| it.chart_max).or(largest)
+    }
+
+    /// Branches of one divergence or convergence of a chart.
+    pub const fn chart_branches(&self) -> Option<Limit> {
+        match self.family {
+            Family::Pl7 => Some(pl7::BRANCHES),
+            Family::Pl72 => Some(pl72::OR_BRANCHES_OUT),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Pages of a chart, then lines and columns of a page.
+    pub const fn chart_pages(&self) -> Option<(Limit, Limit, Limit)> {
+        match self.family {
+            Family::Pl7 => Some((pl7::CHART_PAGES, pl7::PAGE_LINES, pl7::PAGE_COLUMNS)),
+            Family::Pl72 | Family::Step7 => None,
+        }
     }
 
     /// What one event may exchange; `None` when the controller is unknown: the series count differently.

@@ -1,5 +1,6 @@
 //! TSX Micro and Premium, programmed with PL7.
 
+pub mod block;
 mod memory;
 
 pub use memory::Memory;
@@ -49,8 +50,16 @@ pub const TRANSITIONS: Limit = Limit::new(1024, "PL7:4190");
 pub const AND_CONVERGENCES: Limit = Limit::new(64, "PL7:4286");
 /// Branches of one divergence or convergence.
 pub const BRANCHES: Limit = Limit::new(11, "PL7:4191-4196");
+/// Lines and columns of a page of a chart.
+pub const PAGE_LINES: Limit = Limit::new(14, "PL7:4322");
+pub const PAGE_COLUMNS: Limit = Limit::new(11, "PL7:4322");
 /// Columns of a rung.
 pub const LADDER_COLUMNS: Limit = Limit::new(11, "PL7:2660");
+/// Columns of a comparison block on one line, and of an operation block.
+pub const COMPARE_COLUMNS: Limit = Limit::new(2, "PL7:2766");
+pub const OPERATE_COLUMNS: Limit = Limit::new(4, "PL7:2767");
+/// Characters in one of them.
+pub const BLOCK_TEXT: Limit = Limit::new(4096, "PL7:2766-2767");
 /// Pages of the chart, and of each macro-step.
 pub const CHART_PAGES: Limit = Limit::new(8, "PL7:4265");
 /// Macro-steps `%XMj`.

@@ -44,6 +44,9 @@ pub(super) struct Builder {
     /// Labels that some jump further down goes back to.
     back_targets: FxHashSet<SmolStr>,
     label_index: FxHashMap<SmolStr, u32>,
+    /// Number of the piece of code with labels of its own, and its first jump.
+    part: u32,
+    first_jump: usize,
     network: u32,
     loops: Vec<u32>,
 }
@@ -79,6 +82,8 @@ impl Builder {
             calls: Vec::new(),
             loops: Vec::new(),
             declarations: Vec::new(),
+            symbols: Vec::new(),
+            remarks: Vec::new(),
             indexes: Vec::new(),
             constants: Vec::new(),
             oddities: Vec::new(),
@@ -92,6 +97,7 @@ impl Builder {
             writes_indirectly: false,
             has_gaps: false,
             mixes_floats: false,
+            chart: None,
         };
         Self {
             model,
@@ -108,6 +114,8 @@ impl Builder {
             pending: FxHashMap::default(),
             back_targets: FxHashSet::default(),
             label_index: FxHashMap::default(),
+            part: 0,
+            first_jump: 0,
             network: 0,
             loops: Vec::new(),
         }
@@ -191,6 +199,18 @@ impl Builder {
         let (version, exposed) = self.version(object);
         let mode = if rising { Mode::Rising } else { Mode::Falling };
         self.access(object, mode, range, version, exposed);
+        self.model.exprs.edge(object, version, rising)
+    }
+
+    /// The value of an object as the controller itself looks at it: no access of the program.
+    pub(super) fn peek(&mut self, object: ObjectId) -> ExprId {
+        let (version, _) = self.version(object);
+        self.model.exprs.read(object, version)
+    }
+
+    /// The same of an edge.
+    pub(super) fn peek_edge(&mut self, object: ObjectId, rising: bool) -> ExprId {
+        let (version, _) = self.version(object);
         self.model.exprs.edge(object, version, rising)
     }
 
@@ -338,6 +358,25 @@ impl Builder {
 
     // Control flow.
 
+    /// A piece of code begins that is programmed by itself, as an action is: its labels are its own, and other code of the
+    /// program may have run before it.
+    pub(super) fn begin_part(&mut self) {
+        self.resolve_jumps();
+        self.part += 1;
+        self.label_index.clear();
+        self.pending.clear();
+        self.back_targets.clear();
+        self.loops.clear();
+        self.wipe_by_call();
+    }
+
+    fn resolve_jumps(&mut self) {
+        for jump in self.model.jumps.iter_mut().skip(self.first_jump) {
+            jump.target = jump.target.or_else(|| self.label_index.get(&jump.label).copied());
+        }
+        self.first_jump = self.model.jumps.len();
+    }
+
     /// Tells the labels that some jump goes back to, which a lowering finds before it walks the code: what is known on
     /// the way down does not hold there.
     pub(super) fn set_back_targets(&mut self, labels: FxHashSet<SmolStr>) {
@@ -376,7 +415,8 @@ impl Builder {
         let target = self.label_index.get(&label).copied();
         let statement = index(self.model.statements.len());
         let anchor = self.anchor(at);
-        self.model.jumps.push(Jump { label: label.clone(), text, range: at, anchor, statement, when, target });
+        let part = self.part;
+        self.model.jumps.push(Jump { label: label.clone(), text, range: at, anchor, statement, when, target, part });
         let jump = index(self.model.jumps.len() - 1);
         self.statement(StatementKind::Jump(jump), range);
         let taken = self.model.exprs.and(self.path, when);
@@ -419,7 +459,7 @@ impl Builder {
     pub(super) fn label(&mut self, name: SmolStr, text: SmolStr, range: TextRange) {
         let label = index(self.model.labels.len());
         let statement = index(self.model.statements.len());
-        self.model.labels.push(Label { name: name.clone(), text, range, statement });
+        self.model.labels.push(Label { name: name.clone(), text, range, statement, part: self.part });
         self.label_index.entry(name.clone()).or_insert(label);
         let arriving = self.pending.remove(&name).unwrap_or(Exprs::FALSE);
         self.path = self.model.exprs.or(self.path, arriving);
@@ -472,10 +512,7 @@ impl Builder {
     }
 
     pub(super) fn finish(mut self) -> UnitModel {
-        let index = &self.label_index;
-        for jump in &mut self.model.jumps {
-            jump.target = jump.target.or_else(|| index.get(&jump.label).copied());
-        }
+        self.resolve_jumps();
         self.model
     }
 }

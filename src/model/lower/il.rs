@@ -8,6 +8,7 @@ use rowan::TextRange;
 use smol_str::SmolStr;
 
 use super::builder::index;
+use super::chart;
 use super::pl7::{self, Kind, Pl7};
 use crate::model::UnitModel;
 use crate::model::entity::{Entity, Part};
@@ -18,13 +19,27 @@ use crate::syntax::pl7::ast::{self, BracketContent, IlOperand};
 use crate::syntax::pl7::instructions::{self, IlOp};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
+use crate::target::pl7::block;
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     // A receptivity is a list of tests alone (PL7:4713-4749).
     let tests_only = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
         || is_bare_receptivity(root);
+    let mut pl7 = Pl7::new(root, entity, Language::Pl7Il);
+    chart::enter_piece(&mut pl7);
+    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    let all = ast::Root::cast(root).into_iter().flat_map(ast::Root::sentences);
+    sentences(pl7, all, tests_only).0.b.finish()
+}
+
+/// Lowers sentences, and gives the lowering back with the result of the last one.
+pub(super) fn sentences<'t>(
+    pl7: Pl7,
+    sentences: impl IntoIterator<Item = ast::Sentence<'t>>,
+    tests_only: bool,
+) -> (Pl7, Option<ExprId>) {
     let mut lowering = Lowering {
-        pl7: Pl7::new(root, entity, Language::Pl7Il),
+        pl7,
         tests_only,
         result: None,
         test: None,
@@ -36,14 +51,11 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitMod
         block: None,
         forgotten: false,
     };
-    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
-    if let Some(root) = ast::Root::cast(root) {
-        for sentence in root.sentences() {
-            lowering.sentence(&sentence);
-        }
+    for sentence in sentences {
+        lowering.sentence(&sentence);
     }
     lowering.close_block(None);
-    lowering.pl7.b.finish()
+    (lowering.pl7, lowering.result)
 }
 
 /// One sentence of tests without a heading: what documents print of a receptivity.
@@ -528,12 +540,8 @@ impl Lowering {
             return;
         }
         if data.class == Class::Block && matches!(op, IlOp::S | IlOp::R) {
-            let starts = data.text.to_ascii_uppercase().starts_with("%MN");
-            let pin = match op {
-                IlOp::R => Pin::Reset,
-                _ if starts => Pin::Start,
-                _ => Pin::Preset,
-            };
+            let letters = block::of_address(&data.text).map_or("", |it| it.letters);
+            let pin = pl7::pin(letters, op.info().mnemonic);
             self.check_pin(object, op, range, text);
             self.pl7.b.drive(object, pin, when, None, at, range);
             return;
@@ -560,14 +568,7 @@ impl Lowering {
     /// `IN %TM1`, `CU %C8`, and the same without operand inside a structured block.
     fn drive(&mut self, op: IlOp, instr: &ast::IlInstr, range: TextRange, text: &str) {
         self.in_parentheses(OddityKind::StoreInParentheses, range, text);
-        let pin = match op {
-            IlOp::Cu => Pin::Up,
-            IlOp::Cd => Pin::Down,
-            IlOp::I => Pin::Store,
-            IlOp::O => Pin::Retrieve,
-            IlOp::U => Pin::Advance,
-            _ => Pin::Start,
-        };
+        let pin = pl7::pin("", op.info().mnemonic);
         let place = match instr.operand() {
             Some(IlOperand::Object(it)) => Some(self.pl7.object_ref(&it)),
             Some(IlOperand::Name(it)) => Some(self.pl7.name_ref(&it)),
@@ -614,7 +615,7 @@ impl Lowering {
     fn check_pin(&mut self, object: ObjectId, op: IlOp, range: TextRange, text: &str) {
         let data = self.pl7.b.model.object(object);
         let Some(inputs) = inputs_of(&data.text) else { return };
-        if !inputs.contains(&op) {
+        if !inputs.contains(&op.info().mnemonic) {
             let message = format!("`{}` has no input `{}`", data.text, op.info().mnemonic);
             self.structure(range, text, &message);
         }
@@ -692,18 +693,9 @@ impl Lowering {
     }
 }
 
-/// Inputs of a function block by its address (PL7:977-999 for the families; the inputs are those of the blocks'
-/// drawings and of the vendor's second volume).
-fn inputs_of(address: &str) -> Option<&'static [IlOp]> {
-    let letters = address.trim_start_matches('%').trim_end_matches(|it: char| it.is_ascii_digit());
-    Some(match letters.to_ascii_uppercase().as_str() {
-        "TM" => &[IlOp::In],
-        "C" => &[IlOp::R, IlOp::S, IlOp::Cu, IlOp::Cd],
-        "MN" => &[IlOp::S],
-        "R" => &[IlOp::R, IlOp::I, IlOp::O],
-        "DR" => &[IlOp::R, IlOp::U],
-        _ => return None,
-    })
+/// Inputs of a function block by its address. How a list drives series 7 timers is not in the manual.
+fn inputs_of(address: &str) -> Option<&'static [&'static str]> {
+    block::of_address(address).filter(|it| it.letters != "T").map(|it| it.inputs)
 }
 
 /// Outputs of the blocks of PL7:977-999, by the letters of their bits.

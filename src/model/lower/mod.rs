@@ -2,11 +2,13 @@
 
 mod awl;
 mod builder;
+mod chart;
+mod exchange;
 mod il;
+mod ladder;
 mod pl7;
 mod st;
-
-use rowan::TextRange;
+mod xref;
 
 use super::UnitModel;
 use super::entity::Entity;
@@ -19,7 +21,10 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
-        Language::Exchange => builder::Builder::new(entity, language, TextRange::default()).finish(),
+        Language::Exchange => exchange::lower(root, text, entity),
+        Language::Pl7Xref => xref::lower(root, entity),
+        Language::Pl7Ld => ladder::lower(root, text, entity),
+        Language::Pl7Gr7 | Language::Sfc => chart::lower(root, text, entity, language),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What PL7 instruction list and structured text share: operands, expressions, numeric operations, calls.
+//! What the languages of PL7 share: operands, expressions, numeric operations, calls.
 
 use crate::syntax::AstNode as _;
 use rowan::TextRange;
@@ -43,15 +43,17 @@ pub(super) struct Pl7 {
 }
 
 /// The heading line, else the first sentence's first token.
-fn heading(root: SyntaxNode<'_>) -> TextRange {
-    let root = ast::Root::cast(root);
+fn heading(node: SyntaxNode<'_>) -> TextRange {
+    let root = ast::Root::cast(node);
     let heading = root.as_ref().and_then(|it| it.headings().next()).map(|it| it.syntax().text_range());
+    let rung = || Some(root.as_ref()?.rungs().next()?.keyword()?.text_range());
     let first = || {
         let sentence = root.as_ref()?.sentences().next()?;
         let mut tokens = sentence.syntax().descendant_tokens();
         Some(tokens.find(|it| !it.kind().is_trivia())?.text_range())
     };
-    heading.or_else(first).unwrap_or_default()
+    let token = || node.descendant_tokens().find(|it| !it.kind().is_trivia()).map(|it| it.text_range());
+    heading.or_else(first).or_else(rung).or_else(token).unwrap_or_default()
 }
 
 impl Pl7 {
@@ -59,7 +61,7 @@ impl Pl7 {
         Self { b: Builder::new(entity, language, heading(root)) }
     }
 
-    fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
+    pub(super) fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
         self.b.oddity(OddityKind::Address(error), range, text);
         self.b.object(Object {
             text: text.into(),
@@ -538,7 +540,24 @@ impl Pl7 {
     }
 }
 
-/// Labels that a jump below them goes to, for both languages.
+/// The pin that the name of an input means, by the letters of the block's address.
+pub(super) fn pin(block: &str, input: &str) -> Pin {
+    match input {
+        "R" => Pin::Reset,
+        "S" if block.eq_ignore_ascii_case("MN") => Pin::Start,
+        "S" => Pin::Preset,
+        "CU" => Pin::Up,
+        "CD" => Pin::Down,
+        "I" => Pin::Store,
+        "O" => Pin::Retrieve,
+        "U" => Pin::Advance,
+        // The control input of a series 7 timer lets it run (PL72:659).
+        "C" => Pin::Enable,
+        _ => Pin::Start,
+    }
+}
+
+/// Labels that a jump below them goes to, for all languages.
 pub(super) fn back_targets(root: SyntaxNode<'_>, text: &str) -> rustc_hash::FxHashSet<SmolStr> {
     let mut labels = rustc_hash::FxHashSet::default();
     let mut back = rustc_hash::FxHashSet::default();

@@ -4,6 +4,7 @@ use crate::syntax::AstNode as _;
 use rowan::TextRange;
 
 use super::builder::index;
+use super::chart;
 use super::pl7::{self, Pl7};
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
@@ -14,24 +15,32 @@ use crate::syntax::pl7::ast::{self, Stmt};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
-    let mut lowering = Lowering { pl7: Pl7::new(root, entity, Language::Pl7St) };
-    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
-    if let Some(root) = ast::Root::cast(root) {
-        for sentence in root.sentences() {
-            lowering.pl7.b.next_network();
-            for label in sentence.labels() {
-                lowering.pl7.label(&label);
-            }
-            for statement in sentence.statements() {
-                lowering.statement(&statement);
-            }
+    let mut pl7 = Pl7::new(root, entity, Language::Pl7St);
+    chart::enter_piece(&mut pl7);
+    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    let all = ast::Root::cast(root).into_iter().flat_map(ast::Root::sentences);
+    sentences(pl7, all).0.b.finish()
+}
+
+/// Lowers sentences, and gives the lowering back with the value of the last one that is an expression.
+pub(super) fn sentences<'t>(pl7: Pl7, sentences: impl IntoIterator<Item = ast::Sentence<'t>>) -> (Pl7, Option<ExprId>) {
+    let mut lowering = Lowering { pl7, value: None };
+    for sentence in sentences {
+        lowering.pl7.b.next_network();
+        for label in sentence.labels() {
+            lowering.pl7.label(&label);
+        }
+        for statement in sentence.statements() {
+            lowering.statement(&statement);
         }
     }
-    lowering.pl7.b.finish()
+    (lowering.pl7, lowering.value)
 }
 
 struct Lowering {
     pl7: Pl7,
+    /// Of an expression that stands alone, as a receptivity does.
+    value: Option<ExprId>,
 }
 
 impl Lowering {
@@ -70,7 +79,7 @@ impl Lowering {
             Stmt::Empty(_) => {}
             Stmt::Expr(it) => {
                 if let Some(expr) = it.expr() {
-                    self.pl7.expr(&expr);
+                    self.value = Some(self.pl7.expr(&expr).0);
                 }
             }
         }

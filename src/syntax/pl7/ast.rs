@@ -4,7 +4,10 @@ use smol_str::SmolStr;
 
 use super::functions::{self, Function};
 use super::instructions::IlOp;
+use super::ladder_words::{self, Element};
 use super::word::{self, Keyword};
+use rowan::TextRange;
+
 use crate::syntax::node::{choices, nodes};
 use crate::syntax::{AstChildren, AstNode as _, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
@@ -47,6 +50,10 @@ nodes! {
     ObjectRef,
     NameRef,
     Index,
+    /// A rung of ladder: label and rows. Its comment stands behind `RUNG`.
+    Rung,
+    RungRow,
+    Cell,
 }
 
 choices! {
@@ -176,6 +183,10 @@ impl<'t> Root<'t> {
     pub fn headings(self) -> AstChildren<'t, Heading<'t>> {
         self.children()
     }
+
+    pub fn rungs(self) -> AstChildren<'t, Rung<'t>> {
+        self.children()
+    }
 }
 
 impl<'t> Sentence<'t> {
@@ -199,6 +210,79 @@ impl<'t> Sentence<'t> {
 
     /// The statements of the outermost level.
     pub fn statements(self) -> AstChildren<'t, Stmt<'t>> {
+        self.children()
+    }
+}
+
+impl<'t> Rung<'t> {
+    /// `RUNG`.
+    pub fn keyword(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Ident)
+    }
+
+    pub fn label(self) -> Option<LabelDef<'t>> {
+        self.child()
+    }
+
+    pub fn rows(self) -> AstChildren<'t, RungRow<'t>> {
+        self.children()
+    }
+}
+
+impl<'t> RungRow<'t> {
+    pub fn cells(self) -> AstChildren<'t, Cell<'t>> {
+        self.children()
+    }
+}
+
+impl<'t> Cell<'t> {
+    /// `OPEN_CONTACT`; `None` for a cell that could not be read.
+    pub fn word(self) -> Option<SyntaxToken<'t>> {
+        self.0.tokens().find(|it| !it.kind().is_trivia())
+    }
+
+    pub fn element(self) -> Option<Element> {
+        Some(ladder_words::lookup(self.word()?.text())?.element)
+    }
+
+    /// The bit of a contact or coil, the block of `BLOCK(...)`.
+    pub fn operand(self) -> Option<Expr<'t>> {
+        self.child()
+    }
+
+    /// Number of cells or rows; 1 where none is written, `None` where it is no number.
+    pub fn count(self) -> Option<u32> {
+        match self.operand() {
+            Some(Expr::Literal(it)) => it.token()?.text().parse().ok(),
+            Some(_) => None,
+            None => Some(1),
+        }
+    }
+
+    /// `%L10` of a jump.
+    pub fn label(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::LabelAddress)
+    }
+
+    /// `SR5` of a call, with its number.
+    pub fn subroutine(self) -> Option<(SyntaxToken<'t>, u32)> {
+        self.0.tokens().find_map(|it| Some((it, word::subroutine(it.text())?)))
+    }
+
+    /// The condition of `COMPARE ... END_BLOCK`.
+    pub fn comparison(self) -> Option<Expr<'t>> {
+        self.child()
+    }
+
+    /// What stands between the word of a block and its `END_BLOCK`.
+    pub fn block_text(self) -> Option<TextRange> {
+        let end = self.0.tokens().filter(|it| Keyword::of(it.text()) == Some(Keyword::EndBlock)).last()?;
+        let word = self.word()?.text_range();
+        (word.end() <= end.text_range().start()).then(|| TextRange::new(word.end(), end.text_range().start()))
+    }
+
+    /// The statements of `OPERATE ... END_BLOCK`.
+    pub fn operations(self) -> AstChildren<'t, Stmt<'t>> {
         self.children()
     }
 }

@@ -281,7 +281,7 @@ impl Grammar<'_, '_> {
         if !self.p.at(LBrack) {
             return false;
         }
-        if self.state.dialect == Dialect::St || !self.p.nth_gap_before(0) {
+        if self.state.dialect != Dialect::Il || !self.p.nth_gap_before(0) {
             return true;
         }
         let is_operand = |n| matches!(self.p.nth(n), Some(ObjectAddress | Ident | Number));

@@ -1,4 +1,4 @@
-//! What the grammars of the two languages share: errors, depth, recovery, the frame of a unit and its sentences.
+//! What the grammars of the languages share: errors, depth, recovery, the frame of a unit and its sentences.
 
 use SyntaxKind::{
     Bang, CharString, Colon, Comma, Elision, Error, Heading, Ident, LBrack, LParen, LabelAddress, LabelDef, Minus,
@@ -6,6 +6,7 @@ use SyntaxKind::{
 };
 use rowan::TextRange;
 
+use super::chart;
 use super::functions;
 use super::lexer::lex;
 use super::word::{self, Keyword};
@@ -15,6 +16,7 @@ use crate::syntax::{MAX_DEPTH, Marker, Parse, Parser, SyntaxKind};
 pub(super) enum Dialect {
     Il,
     St,
+    Ld,
 }
 
 /// How many control structures of each kind are open.
@@ -40,6 +42,12 @@ pub(super) struct State<'t> {
     /// Position of the token that ends the statement at hand, once a statement has asked.
     pub(super) next_end: usize,
     pub(super) is_scanned: bool,
+    /// In a chart: the tokens before which the code of an action or a receptivity ends. Empty elsewhere.
+    stops: &'t [bool],
+    /// Whether the code at hand is a receptivity, where nothing is assigned.
+    pub(super) is_receptivity: bool,
+    /// The last word of a chart that was not known, which has been reported.
+    pub(super) unknown: Option<&'t str>,
 }
 
 pub(super) struct Grammar<'p, 't> {
@@ -48,13 +56,24 @@ pub(super) struct Grammar<'p, 't> {
 }
 
 pub(super) fn parse(text: &str, dialect: Dialect) -> Parse {
+    parse_with(text, dialect, false)
+}
+
+/// Parses a chart, whose actions and receptivities say their own languages.
+pub(super) fn parse_chart(text: &str) -> Parse {
+    parse_with(text, Dialect::St, true)
+}
+
+fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
     let tokens = lex(text);
     let open_end = tokens.last().is_some_and(|it| it.kind == UnclosedComment);
     let mut parser = Parser::new(text, &tokens);
     let words: Vec<_> = (0..)
         .map_while(|n| parser.nth(n).map(|kind| (n, kind)))
         .map(|(n, kind)| if kind == Ident { Keyword::of(parser.nth_text(n)) } else { None })
+        .map(|word| word.filter(|it| !it.is_of_ladder() || is_chart || dialect == Dialect::Ld))
         .collect();
+    let stops = if is_chart { chart::stops(&parser) } else { Vec::new() };
     let state = State {
         words: &words,
         dialect,
@@ -64,13 +83,21 @@ pub(super) fn parse(text: &str, dialect: Dialect) -> Parse {
         open: Open::default(),
         next_end: 0,
         is_scanned: false,
+        stops: &stops,
+        is_receptivity: false,
+        unknown: None,
     };
-    Grammar { p: &mut parser, state }.unit();
+    let mut grammar = Grammar { p: &mut parser, state };
+    if is_chart {
+        grammar.chart();
+    } else {
+        grammar.unit();
+    }
     parser.finish()
 }
 
 impl<'t> Grammar<'_, 't> {
-    /// unit = (heading | program line | sentence)*
+    /// unit = (heading | program line | sentence | rung)*
     fn unit(&mut self) {
         if self.at_task_line() {
             self.heading();
@@ -84,6 +111,10 @@ impl<'t> Grammar<'_, 't> {
             } else if self.p.at(SentenceEnd) {
                 self.error("`(*END_PHRASE*)` without `(*PHRASE*)`");
                 self.bump_error();
+            } else if self.at_keyword(Keyword::Rung) {
+                self.rungs();
+            } else if self.state.dialect == Dialect::Ld {
+                self.between_rungs();
             } else {
                 self.sentence();
             }
@@ -93,7 +124,7 @@ impl<'t> Grammar<'_, 't> {
     /// sentence = ['(*PHRASE*)'] ['!'] [label] content ['(*END_PHRASE*)']
     ///
     /// A label opens a sentence even where its `!` is missing, because it stands nowhere else (PL7:2989, 3489).
-    fn sentence(&mut self) {
+    pub(super) fn sentence(&mut self) {
         let m = self.p.start();
         let start = self.p.position();
         let is_framed = self.p.eat(SentenceStart);
@@ -123,10 +154,10 @@ impl<'t> Grammar<'_, 't> {
                     self.label();
                     content.has_label = true;
                 }
-                Some(Ident) if self.at_heading() || self.at_program_line() => break,
+                Some(Ident) if self.at_heading() || self.at_program_line() || self.at_stop() => break,
                 Some(_) => match self.state.dialect {
                     Dialect::Il => self.instruction(&mut content),
-                    Dialect::St => {
+                    Dialect::St | Dialect::Ld => {
                         self.statement(!content.has_code);
                         content.has_code = true;
                     }
@@ -161,7 +192,7 @@ impl<'t> Grammar<'_, 't> {
     }
 
     /// `ST : MAST - SR10`.
-    fn at_heading(&self) -> bool {
+    pub(super) fn at_heading(&self) -> bool {
         self.p.at(Ident)
             && self.p.nth(1) == Some(Colon)
             && self.p.nth(2) == Some(Ident)
@@ -171,7 +202,7 @@ impl<'t> Grammar<'_, 't> {
     }
 
     /// `MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)` (PL7:4650): a heading that names no language.
-    fn at_task_line(&self) -> bool {
+    pub(super) fn at_task_line(&self) -> bool {
         self.p.at(Ident)
             && self.p.nth(1) == Some(Minus)
             && self.p.nth(2) == Some(Ident)
@@ -179,7 +210,7 @@ impl<'t> Grammar<'_, 't> {
             && ["MAST", "FAST"].iter().any(|it| self.p.at_text(it))
     }
 
-    fn heading(&mut self) {
+    pub(super) fn heading(&mut self) {
         let m = self.p.start();
         self.p.bump();
         while !self.p.newline_before() && !self.p.at(SentenceStart) && !self.p.at(Bang) {
@@ -189,7 +220,7 @@ impl<'t> Grammar<'_, 't> {
     }
 
     /// `PROGRAM MAST'SR1'`, whose blanks may be missing, and `END_PROGRAM`.
-    fn at_program_line(&self) -> bool {
+    pub(super) fn at_program_line(&self) -> bool {
         if !self.p.at(Ident) {
             return false;
         }
@@ -204,7 +235,7 @@ impl<'t> Grammar<'_, 't> {
         }
     }
 
-    fn program_line(&mut self) {
+    pub(super) fn program_line(&mut self) {
         let is_end = self.keyword() == Some(Keyword::EndProgram);
         self.p.bump();
         if is_end {
@@ -243,9 +274,20 @@ impl<'t> Grammar<'_, 't> {
     pub(super) fn at_boundary(&self) -> bool {
         match self.p.current() {
             None | Some(Bang | SentenceStart | SentenceEnd) => true,
-            Some(Ident) => self.at_program_line(),
+            Some(Ident) => {
+                self.keyword().is_some_and(Keyword::is_of_ladder) || self.at_program_line() || self.at_stop()
+            }
             _ => false,
         }
+    }
+
+    /// Whether an element of a chart ends or starts here.
+    pub(super) fn at_stop(&self) -> bool {
+        self.nth_stops(0)
+    }
+
+    pub(super) fn nth_stops(&self, n: usize) -> bool {
+        self.state.stops.get(self.p.position() + n).copied().unwrap_or(false)
     }
 
     /// Reports the current token, unless the statement has been reported.
@@ -404,6 +446,7 @@ impl<'t> Grammar<'_, 't> {
             && match self.state.dialect {
                 Dialect::Il => true,
                 Dialect::St => self.at_statement_start(),
+                Dialect::Ld => false,
             }
     }
 

@@ -1,14 +1,18 @@
-//! PL7 instruction list and structured text, in the exchange form and as pasted in documents.
+//! PL7 instruction list, structured text, ladder and Grafcet, in the exchange form and as pasted in documents.
 //!
-//! One lexer, one expression grammar and one frame of sentences serve both languages. The tree is
-//! `Root > Sentence > (LabelDef | IlInstr | statement)*`; [`ast`] gives it types.
+//! One lexer, one expression grammar and one frame of sentences serve the first two. The tree is
+//! `Root > Sentence > (LabelDef | IlInstr | statement)*`, of ladder `Root > Rung > (LabelDef | RungRow > Cell)*`; [`ast`]
+//! gives it types.
 
 pub mod ast;
+pub mod chart;
 mod expr;
 pub mod functions;
 mod grammar;
 mod il;
 pub mod instructions;
+mod ladder;
+pub mod ladder_words;
 mod lexer;
 mod st;
 mod word;
@@ -24,7 +28,25 @@ pub fn parse_il(text: &str) -> Parse {
     grammar::parse(text, Dialect::Il)
 }
 
+/// Parses one unit of ladder. Total and linear for every text.
+pub fn parse_ld(text: &str) -> Parse {
+    grammar::parse(text, Dialect::Ld)
+}
+
 /// Parses one unit of structured text. Total and linear for every text.
 pub fn parse_st(text: &str) -> Parse {
     grammar::parse(text, Dialect::St)
+}
+
+/// Whether a word means something in the language, in any case: a keyword, an instruction, a function, a subroutine.
+pub fn is_reserved(text: &str) -> bool {
+    word::Keyword::of(text).is_some()
+        || instructions::lookup(text).is_some()
+        || functions::lookup(text).is_some()
+        || word::subroutine(text).is_some()
+}
+
+/// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
+pub fn parse_chart(text: &str) -> Parse {
+    grammar::parse_chart(text)
 }

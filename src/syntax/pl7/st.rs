@@ -265,7 +265,7 @@ impl Grammar<'_, '_> {
     /// An assignment, a call or an expression, with its `;`.
     fn simple_statement(&mut self, is_first: bool) {
         let m = self.p.start();
-        let is_receptivity = is_first && self.is_last_of_sentence();
+        let is_receptivity = is_first && (self.state.is_receptivity || self.is_last_of_sentence());
         let Some(kind) = self.action(is_receptivity) else {
             self.p.abandon(m);
             return self.junk("a statement");
@@ -283,7 +283,7 @@ impl Grammar<'_, '_> {
         if self.state.next_end < here || !self.state.is_scanned {
             let is_end = |n: usize| match self.p.nth(n) {
                 Some(Semicolon | Bang | SentenceStart | SentenceEnd | LabelAddress) | None => true,
-                Some(Ident) => self.p.nth_newline_before(n) && is_end_word(self.nth_keyword(n)),
+                Some(Ident) => self.nth_stops(n) || self.p.nth_newline_before(n) && is_end_word(self.nth_keyword(n)),
                 Some(_) => false,
             };
             // The place is kept, so that however many sentences ask, each token is looked at once.
@@ -297,7 +297,7 @@ impl Grammar<'_, '_> {
         let n = usize::from(self.p.at(Semicolon));
         match self.p.nth(n) {
             None | Some(Bang | SentenceStart | SentenceEnd | LabelAddress) => true,
-            Some(Ident) => is_end_word(self.nth_keyword(n)),
+            Some(Ident) => self.nth_stops(n) || is_end_word(self.nth_keyword(n)),
             _ => false,
         }
     }

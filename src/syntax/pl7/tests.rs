@@ -803,10 +803,97 @@ const CODE: &str = "PROGRAM MAST'SR1'\n(*PHRASE*) (*c*) %L1: IF %M0 AND [%MW10<2
     ELSIF RE a.b THEN SET %M1; ELSE Cpt(a,,b); END_IF; FOR %MW4=0 TO 3 DO EXIT; END_FOR; (*END_PHRASE*)\n! LD %I1.0\n\
     AND(N %I1.1 OR %M2 )\n[%MW10:='abc'] LD[%MW10<1000] ST %Q2.0 SR5 JMPC %L1\n! REPEAT INC %MW4; UNTIL %MW4>1 END_REPEAT;";
 
+/// Shape of the rungs, without `RUNG` and `END_RUNG`.
+#[track_caller]
+fn ld(cells: &str) -> String {
+    let shape = shape(&legal(parse_ld(&format!("RUNG\n{cells}\nEND_RUNG\n"))));
+    shape.strip_prefix("(Rung RUNG ").and_then(|it| it.strip_suffix(" END_RUNG)")).unwrap_or(&shape).to_owned()
+}
+
+fn ld_errors(cells: &str) -> Vec<String> {
+    errors(&parse_ld(&format!("RUNG\n{cells}\nEND_RUNG\n")))
+}
+
+#[test]
+fn rungs_are_rows_of_cells() {
+    assert_eq!(
+        ld("OPEN_CONTACT(%I1.0),H_LINK(3),P_CONTACT(%M7),H_LINK(5),COIL(%Q2.0);\nEMPTY_LINE;"),
+        "(RungRow (Cell OPEN_CONTACT ( (ObjectRef %I1.0) )) , (Cell H_LINK ( (Literal 3) )) , \
+         (Cell P_CONTACT ( (ObjectRef %M7) )) , (Cell H_LINK ( (Literal 5) )) , (Cell COIL ( (ObjectRef %Q2.0) )) ;) \
+         (RungRow (Cell EMPTY_LINE) ;)"
+    );
+    assert_eq!(ld("H_LINK,V_LINK,\n  empty_cell ( 2 ),\n  HASH_COIL();"), {
+        "(RungRow (Cell H_LINK) , (Cell V_LINK) , (Cell empty_cell ( (Literal 2) )) , (Cell HASH_COIL ( )) ;)"
+    });
+    assert_eq!(
+        ld("JUMP_COIL(%L10);CALL_COIL(SR5);CALL_COIL(%SR5);RETURN_COIL;HALT_COIL;"),
+        "(RungRow (Cell JUMP_COIL ( %L10 )) ;) (RungRow (Cell CALL_COIL ( SR5 )) ;) (RungRow (Cell CALL_COIL ( %SR5 )) ;) \
+         (RungRow (Cell RETURN_COIL) ;) (RungRow (Cell HALT_COIL) ;)"
+    );
+    assert_eq!(
+        ld("OPEN_CONTACT(%MW2:X4),CLOSE_CONTACT(%M10[%MW5]),CLOSED_CONTACT(Depart),BLOCK(%TM0),BLOCK(Tempo);"),
+        "(RungRow (Cell OPEN_CONTACT ( (ObjectRef %MW2:X4) )) , \
+         (Cell CLOSE_CONTACT ( (ObjectRef %M10 (Index [ (ObjectRef %MW5) ])) )) , \
+         (Cell CLOSED_CONTACT ( (NameRef Depart) )) , (Cell BLOCK ( (ObjectRef %TM0) )) , (Cell BLOCK ( (NameRef Tempo) )) ;)"
+    );
+}
+
+#[test]
+fn blocks_hold_expressions_and_statements() {
+    assert_eq!(
+        ld("COMPARE %MW0 > 5 END_BLOCK,OPERATE %MW0:=%MW1+5 END_BLOCK;"),
+        "(RungRow (Cell COMPARE (BinExpr (ObjectRef %MW0) > (Literal 5)) END_BLOCK) , \
+         (Cell OPERATE (AssignStmt (ObjectRef %MW0) := (BinExpr (ObjectRef %MW1) + (Literal 5))) END_BLOCK) ;)"
+    );
+    assert_eq!(
+        ld("OPERATE\n INC %MW0;\n SR1\nEND_BLOCK; OPERATE SORT_ARW(1,%MW0:10); END_BLOCK;"),
+        "(RungRow (Cell OPERATE (CallStmt INC (ObjectRef %MW0)) ; (CallStmt SR1) END_BLOCK) ;) \
+         (RungRow (Cell OPERATE (CallStmt SORT_ARW ( (Literal 1) , (ObjectRef %MW0:10) )) ; END_BLOCK) ;)"
+    );
+}
+
+#[test]
+fn rungs_have_labels_and_comments() {
+    let parse = legal(parse_ld(
+        "LD : MAST - SR1\nRUNG (*fill*) %L10:\nH_LINK(10),COIL(%M0);\nEND_RUNG\n\nRUNG %L2 H_LINK(10),COIL(%M1);END_RUNG\nPROGRAM \
+         MAST'x'\nRUNG\nEND_RUNG\nEND_PROGRAM\n",
+    ));
+    let root = Root::cast(parse.syntax()).expect("a root");
+    let labels: Vec<_> = root.rungs().map(|it| it.label().and_then(|it| it.number())).collect();
+    assert_eq!(labels, [Some(10), Some(2), None]);
+    assert_eq!(root.rungs().map(|it| it.rows().count()).collect::<Vec<_>>(), [1, 1, 0]);
+}
+
+#[test]
+fn one_error_for_what_is_wrong_in_a_rung() {
+    assert_eq!(
+        ld_errors("TIMER_CONTACT(%M0,5),H_LINK(9),LAMP(%Q2.0);\nH_LINK(10),COIL(%M1);"),
+        ["TIMER_CONTACT: `TIMER_CONTACT` is no element of a rung", "LAMP: `LAMP` is no element of a rung"]
+    );
+    assert_eq!(ld_errors("OPEN_CONTACT(),H_LINK(9),COIL(%Q2.0);"), ["): expected an object, found `)`"]);
+    assert_eq!(ld_errors("OPEN_CONTACT,H_LINK(9),COIL(%Q2.0);"), [",: expected `(`, found `,`"]);
+    assert_eq!(ld_errors("H_LINK(x),COIL(%Q2.0);"), ["x: expected a number of cells, found `x`"]);
+    assert_eq!(ld_errors("H_LINK(9) COIL(%Q2.0);"), ["COIL: expected `,` or `;`, found `COIL`"]);
+    assert_eq!(ld_errors("H_LINK(9),,COIL(%Q2.0);"), [",: expected an element of a rung, found `,`"]);
+    assert_eq!(ld_errors("H_LINK(9),COIL(%Q2.0)"), ["): expected `;` after this"]);
+    assert_eq!(ld_errors("COMPARE %MW0 >, COIL(%M0);"), [",: expected an operand, found `,`"]);
+    assert_eq!(ld_errors("COMPARE %MW0 > 5, COIL(%M0);"), [",: expected `END_BLOCK`, found `,`"]);
+    assert_eq!(ld_errors("OPERATE %MW0 END_BLOCK;"), ["END_BLOCK: expected `:=`, found `END_BLOCK`"]);
+    assert_eq!(ld_errors("OPERATE END_BLOCK;"), ["END_BLOCK: expected an operation, found `END_BLOCK`"]);
+    assert_eq!(
+        errors(&parse_ld("RUNG\nH_LINK(10),COIL(%M0);\nRUNG\nH_LINK(10),COIL(%M1);\nEND_RUNG")),
+        [";: expected `END_RUNG` after this"]
+    );
+    assert_eq!(
+        errors(&parse_ld("%M0 := 5;\n! LD %M1\nRUNG\nEND_RUNG\nELSE")),
+        ["%M0: expected `RUNG`, found `%M0`", "END_RUNG: expected `RUNG` after this"]
+    );
+}
+
 proptest! {
     #[test]
     fn trees_are_the_text(text in "\\PC*") {
-        for parse in [parse_il(&text), parse_st(&text)] {
+        for parse in [parse_il(&text), parse_st(&text), parse_ld(&text)] {
             prop_assert_eq!(parse.syntax().text(), text.as_str());
         }
     }
@@ -816,10 +903,11 @@ proptest! {
         "IF", "THEN", "ELSE", "ELSIF", "END_IF", "WHILE", "DO", "END_WHILE", "REPEAT", "UNTIL", "END_REPEAT", "FOR", "TO",
         "END_FOR", ";", ":=", "=", "%M0", "%MW1", "%L1", ":", "(", ")", "[", "]", ",", "AND", "OR", "NOT", "SET", "x", ".",
         "5", "'a", "!", "(*PHRASE*)", "(*END_PHRASE*)", "(*", "*)", "\n", "LD", "ST", "R", "N", "BLK", "SR1", "SR", "JMP",
-        "PROGRAM", "END_PROGRAM", "...", "%", "-", "EXIT",
+        "PROGRAM", "END_PROGRAM", "...", "%", "-", "EXIT", "RUNG", "END_RUNG", "RUNG H_LINK(10)", "COIL(%M0)", "V_LINK",
+        "COMPARE", "OPERATE", "END_BLOCK", "OPEN_CONTACT",
     ]), 0..60)) {
         let text = words.join(" ");
-        for parse in [parse_il(&text), parse_st(&text)] {
+        for parse in [parse_il(&text), parse_st(&text), parse_ld(&text)] {
             prop_assert_eq!(parse.syntax().text(), text.as_str());
             for error in parse.errors() {
                 prop_assert!(text.is_char_boundary(error.range.start().into()));
@@ -831,7 +919,7 @@ proptest! {
     #[test]
     fn mutated_code_is_kept(from in 0..CODE.len(), to in 0..CODE.len(), junk in "[;:=()\\[\\]a%.!' ]{0,5}") {
         let text = format!("{}{junk}{}", &CODE[..from], &CODE[to..]);
-        for parse in [parse_il(&text), parse_st(&text)] {
+        for parse in [parse_il(&text), parse_st(&text), parse_ld(&text)] {
             prop_assert_eq!(parse.syntax().text(), text.as_str());
         }
     }
@@ -844,5 +932,13 @@ proptest! {
         let last = Root::cast(parse.syntax()).and_then(|it| it.sentences().last()).expect("a sentence");
         prop_assert_eq!(last.statements().count(), 1);
         prop_assert!(matches!(last.statements().next(), Some(Stmt::Assign(_))));
+    }
+
+    /// What stands in another rung is read the same, whatever is wrong in this one.
+    #[test]
+    fn errors_stay_in_their_rung(junk in "[;:=()\\[\\]a%.', A-Z0-9_]{0,30}") {
+        let parse = parse_ld(&format!("RUNG\n{junk}\nRUNG\nH_LINK(10),COIL(%M1);\nEND_RUNG"));
+        let last = Root::cast(parse.syntax()).and_then(|it| it.rungs().last()).expect("a rung");
+        prop_assert_eq!(last.rows().flat_map(|it| it.cells()).count(), 2);
     }
 }

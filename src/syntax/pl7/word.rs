@@ -70,6 +70,16 @@ words! {
         False = "FALSE",
         Program = "PROGRAM",
         EndProgram = "END_PROGRAM",
+        Rung = "RUNG",
+        EndRung = "END_RUNG",
+        EndBlock = "END_BLOCK",
+    }
+}
+
+impl Keyword {
+    /// Whether the word is one only where rungs stand: elsewhere it may be a symbol.
+    pub(super) fn is_of_ladder(self) -> bool {
+        matches!(self, Self::Rung | Self::EndRung | Self::EndBlock)
     }
 }
 

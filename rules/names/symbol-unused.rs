@@ -1,0 +1,64 @@
+//! N004: a symbol whose object the program never uses.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::analysis::Site;
+use crate::lint::{ProgramCx, Sink};
+use crate::model::object::{Area, Footprint};
+use crate::model::symbols::key;
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    let program = cx.program;
+    if !program.complete {
+        return;
+    }
+    let used = Used::new(cx);
+    for (unit, facts) in (0..).zip(&program.units) {
+        for symbol in &facts.symbols {
+            // Code that goes by a symbol with two objects is resolved to neither.
+            let by_name = Footprint::new(Area::Symbol(key(&symbol.name)), 0, 1);
+            let Some(object) = symbol.object.as_ref() else { continue };
+            if used.covers(&object.footprint) || used.covers(&by_name) {
+                continue;
+            }
+            let message = format!("the program does not use `{}`, the symbol of `{}`", symbol.name, object.text);
+            sink.report(Site { unit, anchor: symbol.anchor }, message)
+                .note("this assumes that no operator panel, other station or tool uses it");
+        }
+    }
+}
+
+/// Memory that the program uses.
+struct Used<'a> {
+    /// Of each area: first and last bit of each stretch, sorted, without overlaps.
+    stretches: FxHashMap<&'a Area, Vec<(u32, u32)>>,
+    /// Areas of which an index chooses the place.
+    indexed: FxHashSet<&'a Area>,
+}
+
+impl<'a> Used<'a> {
+    fn new(cx: &ProgramCx<'a>) -> Self {
+        let mut used = Self { stretches: FxHashMap::default(), indexed: FxHashSet::default() };
+        // Objects are sorted by area and first bit.
+        for it in &cx.program.objects {
+            let place = &it.object.footprint;
+            if it.object.indexed {
+                used.indexed.insert(&place.area);
+            }
+            let list = used.stretches.entry(&place.area).or_default();
+            match list.last_mut().filter(|it| place.start < it.1) {
+                Some(last) => last.1 = last.1.max(place.end()),
+                None => list.push((place.start, place.end())),
+            }
+        }
+        used
+    }
+
+    fn covers(&self, place: &Footprint) -> bool {
+        let overlaps = |list: &Vec<(u32, u32)>| {
+            let at = list.partition_point(|it| it.1 <= place.start);
+            list.get(at).is_some_and(|it| it.0 < place.end())
+        };
+        self.indexed.contains(&place.area) || self.stretches.get(&place.area).is_some_and(overlaps)
+    }
+}

@@ -1,0 +1,301 @@
+//! Symbols of a program: which address each names, and the facts of units with addresses in place of symbols.
+//!
+//! Resolution comes between the facts of units and [`ProgramIndex`](super::program::ProgramIndex): after it, `Pump` and
+//! `%M0` are one object. A unit that uses no symbol is passed on as it is.
+
+use std::borrow::Cow;
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::{SmolStr, format_smolstr};
+
+use super::facts::{FactObject, UnitFacts};
+use crate::model::object::{Class, Object, Type, pl7};
+use crate::model::symbols::key;
+use crate::model::unit::Mode;
+
+/// The symbols of a program, by [`key`], and the symbols of addresses.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SymbolTable {
+    addresses: FxHashMap<SmolStr, Meaning>,
+    /// Symbol of an address in upper case.
+    names: FxHashMap<SmolStr, SmolStr>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Meaning {
+    Address(SmolStr),
+    /// An instance of a DFB, or a symbol that two declarations give to two objects.
+    Unknown,
+}
+
+impl SymbolTable {
+    pub fn new<'a>(units: impl IntoIterator<Item = &'a UnitFacts>) -> Self {
+        let mut table = Self::default();
+        for symbol in units.into_iter().flat_map(|it| &it.symbols) {
+            let meaning = match &symbol.object {
+                Some(object) => {
+                    let address = SmolStr::from(object.text.to_ascii_uppercase());
+                    table.names.entry(address.clone()).or_insert_with(|| symbol.name.clone());
+                    Meaning::Address(address)
+                }
+                None => Meaning::Unknown,
+            };
+            let known = table.addresses.entry(key(&symbol.name)).or_insert_with(|| meaning.clone());
+            if *known != meaning {
+                *known = Meaning::Unknown;
+            }
+        }
+        table
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.addresses.is_empty()
+    }
+
+    /// The address of a symbol. An item or bit that has no symbol of its own goes by that of its object: `Etat:X1`,
+    /// `Tempo.Q`, a table by that of its first word (PL7:1234-1242).
+    pub fn address(&self, symbol: &str) -> Option<SmolStr> {
+        let base = symbol.find(['.', ':']).unwrap_or(symbol.len());
+        let (name, rest) = symbol.split_at_checked(base)?;
+        match self.addresses.get(&key(name))? {
+            Meaning::Address(address) if rest.is_empty() => Some(address.clone()),
+            Meaning::Address(address) => Some(format_smolstr!("{address}{rest}")),
+            Meaning::Unknown => None,
+        }
+    }
+
+    /// The symbol of an address as written, in the form in which items of an object inherit it.
+    pub fn symbol(&self, address: &str) -> Option<SmolStr> {
+        let address = address.to_ascii_uppercase();
+        if let Some(name) = self.names.get(address.as_str()) {
+            return Some(name.clone());
+        }
+        let base = address.rfind([':', '.'])?;
+        let (object, rest) = address.split_at_checked(base)?;
+        let is_item = rest.starts_with(':') || rest.get(1..).is_some_and(|it| it.starts_with(char::is_alphabetic));
+        let name = self.names.get(object).filter(|_| is_item)?;
+        Some(format_smolstr!("{name}{rest}"))
+    }
+
+    /// A message with the symbol behind each address that it names, and the address behind each symbol: every object
+    /// once.
+    pub fn annotate(&self, message: &str) -> String {
+        let parts: Vec<&str> = message.split('`').collect();
+        let mut out = String::with_capacity(message.len() + 16);
+        let mut done: FxHashSet<&str> = FxHashSet::default();
+        for (at, part) in parts.iter().enumerate() {
+            if at > 0 {
+                out.push('`');
+            }
+            out.push_str(part);
+            // The odd parts stand between two of the quotes, but for one behind an unpaired quote.
+            let is_closed = at % 2 == 0 && at > 1;
+            let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
+            let other = if name.starts_with('%') { self.symbol(name) } else { self.address(name) };
+            if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
+                out.truncate(out.len() - part.len());
+                out.push_str(" (`");
+                out.push_str(&other);
+                out.push_str("`)");
+                out.push_str(part);
+            }
+        }
+        out
+    }
+
+    /// What a symbol used in code names, under the text that the code gives it.
+    fn resolve(&self, object: &Object) -> Option<Object> {
+        if object.class != Class::Symbol {
+            return None;
+        }
+        let text = object.text.as_str();
+        let resolved = if object.indexed {
+            let (name, rest) = text.split_once('[')?;
+            let suffix = rest.rsplit_once(']').map(|it| it.1).filter(|it| !it.is_empty());
+            pl7::parse_indexed(&self.address(name)?, suffix)
+        } else {
+            pl7::parse(&self.address(text)?)
+        };
+        Some(Object { text: object.text.clone(), ..resolved.ok()? })
+    }
+}
+
+/// The facts of the units of a program with every symbol that the table knows replaced by its object.
+pub fn resolve<'a>(table: &SymbolTable, units: &[&'a UnitFacts]) -> Vec<Cow<'a, UnitFacts>> {
+    units.iter().map(|&it| if table.is_empty() { Cow::Borrowed(it) } else { resolve_unit(table, it) }).collect()
+}
+
+fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFacts> {
+    let found: Vec<Option<Object>> = facts.objects.iter().map(|it| table.resolve(&it.object)).collect();
+    if found.iter().all(Option::is_none) {
+        return Cow::Borrowed(facts);
+    }
+    let mut facts = facts.clone();
+    for it in &mut facts.uses {
+        // Without its type, a symbol that takes a value is a word or a bit by what it takes.
+        if let Some(Some(object)) = found.get(it.object as usize) {
+            it.mode = match (it.mode, object.ty) {
+                (Mode::Assign | Mode::AssignNot, ty) if ty != Type::Bool => Mode::Store,
+                (Mode::Store, Type::Bool) => Mode::Assign,
+                (mode, _) => mode,
+            };
+        }
+    }
+    for (fact, object) in facts.objects.iter_mut().zip(found) {
+        if let Some(object) = object {
+            *fact = FactObject::new(&object, fact.number, fact.missed);
+        }
+    }
+    join_aliases(&mut facts);
+    Cow::Owned(facts)
+}
+
+/// Where one unit uses an object by its address and by its symbol, the unit's own facts took them for two. What is not
+/// known of the two together is taken so that no rule speaks without need: conditional writes count as one write, and a
+/// read behind an unconditional write as one of the unit's own value.
+fn join_aliases(facts: &mut UnitFacts) {
+    let mut first: FxHashMap<_, u32> = FxHashMap::default();
+    let mut aliased: FxHashSet<u32> = FxHashSet::default();
+    let same: Vec<u32> = (0..)
+        .zip(&facts.objects)
+        .map(|(at, it)| {
+            let object = &it.object;
+            let id = *first.entry((object.footprint.clone(), object.ty, object.indexed)).or_insert(at);
+            if id != at {
+                aliased.insert(id);
+            }
+            id
+        })
+        .collect();
+    if aliased.is_empty() {
+        return;
+    }
+    let mut groups: FxHashMap<u32, u32> = FxHashMap::default();
+    let mut written: FxHashSet<u32> = FxHashSet::default();
+    for it in &mut facts.uses {
+        let Some(&id) = same.get(it.object as usize).filter(|it| aliased.contains(it)) else { continue };
+        let gives = it.mode.assigns() || it.mode == Mode::Store;
+        if it.mode.reads() && written.contains(&id) {
+            it.exposed = false;
+        }
+        if gives && !it.conditional {
+            written.insert(id);
+        } else if gives {
+            it.group = *groups.entry(id).or_insert(it.group);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::{Entity, Part, Task};
+    use crate::model::lower;
+    use crate::syntax::{self, Language};
+
+    fn facts(text: &str, language: Language) -> UnitFacts {
+        let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let parse = syntax::parse(language, text);
+        assert_eq!(parse.errors(), []);
+        UnitFacts::new(&lower::lower(parse.syntax(), text, entity, language))
+    }
+
+    fn table(text: &str) -> SymbolTable {
+        SymbolTable::new([&facts(text, Language::Exchange)])
+    }
+
+    const VARIABLES: &str = "VAR_GLOBAL\nPump AT %M0 : EBOOL; Etat AT %MW4 : WORD; Tempo AT %TM0 : TM;\n\
+        Four AT %MW10 : WORD; Vis : Cpt_pieces; Bit AT %MW4:X2 : BOOL;\nTwice AT %M1; TWICE AT %M2;\nEND_VAR\n";
+
+    #[test]
+    fn symbols_and_what_inherits_them() {
+        let table = table(VARIABLES);
+        let address = |symbol| table.address(symbol).map(String::from);
+        assert_eq!(address("pump").as_deref(), Some("%M0"), "case does not matter");
+        assert_eq!(address("Etat:X1").as_deref(), Some("%MW4:X1"));
+        assert_eq!(address("Tempo.Q").as_deref(), Some("%TM0.Q"));
+        assert_eq!(address("Vis"), None);
+        assert_eq!(address("Twice"), None, "it names two objects");
+        assert_eq!(address("Other"), None);
+        let symbol = |address| table.symbol(address).map(String::from);
+        assert_eq!(symbol("%m0").as_deref(), Some("Pump"));
+        assert_eq!(symbol("%MW4:X2").as_deref(), Some("Bit"));
+        assert_eq!(symbol("%MW4:X3").as_deref(), Some("Etat:X3"));
+        assert_eq!(symbol("%TM0.Q").as_deref(), Some("Tempo.Q"));
+        assert_eq!(symbol("%I4.0"), None);
+    }
+
+    #[test]
+    fn messages_name_both() {
+        let table = table(VARIABLES);
+        let annotate = |message| table.annotate(message);
+        assert_eq!(annotate("`%M0` is set, `%M0` is reset"), "`%M0` (`Pump`) is set, `%M0` is reset");
+        assert_eq!(annotate("`pump` is `read`"), "`pump` (`%M0`) is `read`");
+        assert_eq!(annotate("use `Four`"), "use `Four` (`%MW10`)");
+        assert_eq!(annotate("`Pump` at `%M0`"), "`Pump` at `%M0`");
+        for kept in ["", "`", "``", "`%M0", "no `%M7`", "`Vis` and `Twice`"] {
+            assert_eq!(annotate(kept), kept);
+        }
+    }
+
+    #[test]
+    fn code_uses_the_objects() {
+        let table = table(VARIABLES);
+        let code = facts(
+            "! Pump := Tempo.Q; Etat := Four; Etat:X1 := %M3; Etat[Four] := 2; Etat:3 := 0; Other := 1;",
+            Language::Pl7St,
+        );
+        let resolved = resolve(&table, &[&code]);
+        let shown: Vec<(&str, u32, Class)> = resolved[0]
+            .objects
+            .iter()
+            .map(|it| (it.object.text.as_str(), it.object.footprint.start, it.object.class))
+            .collect();
+        let expected = [
+            ("Tempo.Q", 0, Class::BlockBit),
+            ("Pump", 0, Class::Memory),
+            ("Four", 160, Class::Memory),
+            ("Etat", 64, Class::Memory),
+            ("%M3", 3, Class::Memory),
+            ("Etat:X1", 65, Class::Memory),
+            ("Etat[Four]", 64, Class::Memory),
+            ("Etat:3", 64, Class::Memory),
+            ("Other", 0, Class::Symbol),
+        ];
+        assert_eq!(shown.iter().map(|it| (it.0, it.2)).collect::<Vec<_>>(), expected.map(|it| (it.0, it.2)));
+        let other = facts("! %MW10 := %MW4;", Language::Pl7St);
+        let same = |a: &str, b: &str| {
+            let one = resolved[0].objects.iter().find(|it| it.object.text == a);
+            let two = other.objects.iter().find(|it| it.object.text == b);
+            one.zip(two).is_some_and(|(one, two)| one.is_same(two))
+        };
+        assert!(same("Four", "%MW10") && same("Etat", "%MW4") && !same("Etat", "%MW10"));
+        for (found, expected) in shown.iter().zip(expected).filter(|it| it.0.2 == Class::Memory) {
+            assert_eq!(found.1, expected.1, "{}", found.0);
+        }
+        assert!(matches!(resolve(&table, &[&facts("! %M1 := %M2;", Language::Pl7St)])[0], Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn the_type_decides_how_it_is_written() {
+        let table = table(VARIABLES);
+        let code = facts("! Pump := %M5; Four := Etat; IF %M2 THEN SET Pump; END_IF;", Language::Pl7St);
+        let modes = |facts: &UnitFacts| -> Vec<Mode> {
+            facts.uses.iter().filter(|it| it.mode.writes()).map(|it| it.mode).collect()
+        };
+        assert_eq!(modes(&resolve(&table, &[&code])[0]), [Mode::Assign, Mode::Store, Mode::Set]);
+    }
+
+    #[test]
+    fn aliases_in_one_unit() {
+        let table = table(VARIABLES);
+        let text = "! IF %M9 THEN Pump := TRUE; ELSE %M0 := FALSE; END_IF; Four := 1; %M8 := %MW10 > 3;";
+        let code = facts(text, Language::Pl7St);
+        let resolved = &resolve(&table, &[&code])[0];
+        let writes: Vec<u32> =
+            resolved.uses.iter().filter(|it| it.conditional && it.mode.writes()).map(|it| it.group).collect();
+        assert!(writes.len() == 2 && writes[0] == writes[1], "only one of the two is reached");
+        let read = resolved.uses.iter().rfind(|it| it.mode == Mode::Read).unwrap();
+        assert!(!read.exposed, "the word was just written under its symbol");
+    }
+}

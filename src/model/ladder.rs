@@ -1,0 +1,669 @@
+//! The grid of a rung: where its elements stand, what is wired to what, and in which order it is evaluated.
+//!
+//! A *wire* is a set of points that links join without an element between them. Power comes from the left rail and flows
+//! along a row from left to right only, along vertical links both ways (PL7:2785-2788), so that the elements form a graph
+//! without cycles.
+//!
+//! **Invariant:** time and memory are linear in the text of the rung, whatever numbers it holds.
+
+use rowan::TextRange;
+
+use crate::syntax::AstNode as _;
+use crate::syntax::pl7::ast::{Cell, Expr, Rung};
+use crate::syntax::pl7::ladder_words::Element;
+use crate::target::pl7::{self, block};
+
+/// Index of a wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Wire(u32);
+
+impl Wire {
+    /// The left rail.
+    pub const RAIL: Self = Self(0);
+}
+
+/// An element where it stands. A link over several cells is one element a cell.
+#[derive(Debug, Clone)]
+pub struct Placed<'t> {
+    pub cell: Cell<'t>,
+    /// `None`: a word that is not known.
+    pub element: Option<Element>,
+    /// Row and column of its upper left cell, from 0.
+    pub row: u32,
+    pub column: u32,
+    /// Cells.
+    pub width: u32,
+    /// The wire at its left edge, of a function block one in each of its rows.
+    pub inputs: Vec<Wire>,
+    /// The wire at its right edge. What acts lets nothing through and has none.
+    pub outputs: Vec<Wire>,
+}
+
+impl Placed<'_> {
+    pub fn range(&self) -> TextRange {
+        self.cell.syntax().text_range()
+    }
+
+    fn is_link(&self) -> bool {
+        matches!(self.element, Some(Element::HLink | Element::ShortCircuit))
+    }
+
+    fn is_action(&self) -> bool {
+        self.element.is_some_and(Element::is_action)
+    }
+
+    fn is_block(&self) -> bool {
+        self.element == Some(Element::Block)
+    }
+
+    /// The column behind its last one, from 0.
+    fn end(&self) -> u32 {
+        self.column + self.width
+    }
+}
+
+/// What breaks the rules of a rung (PL7:2769-2836).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Flaw {
+    /// A test in the column of actions; its last column, from 1.
+    TestInActionZone(u32),
+    /// An action that does not end in the column of actions; its last column, from 1.
+    ActionInTestZone(u32),
+    /// No power can come to the element.
+    NotFed,
+    /// The same of a function or operation block.
+    BlockNotFed,
+    /// What the element lets through goes nowhere.
+    LeadsNowhere,
+    /// A vertical link that ends at nothing.
+    OpenLink,
+    /// A wire goes round the element.
+    Bypassed,
+    /// `(#)` where no transition is.
+    HashOutsideTransition,
+    /// Another coil in a transition.
+    CoilInTransition,
+    /// What a transition must not hold besides.
+    ElementInTransition,
+    /// A contact reads a bit that a later connected network of the rung drives.
+    ReadBeforeDriven,
+}
+
+#[derive(Debug)]
+pub struct Grid<'t> {
+    /// Row by row, each from left to right. Empty cells are left out.
+    pub placed: Vec<Placed<'t>>,
+    /// Cells of each row. Of a number beyond all limits, as many as show that it is.
+    pub rows: Vec<Row<'t>>,
+    wires: Vec<Junction>,
+    open_links: Vec<TextRange>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub struct Row<'t> {
+    pub columns: u32,
+    /// The cell that goes beyond the last column.
+    pub excess: Option<Cell<'t>>,
+    /// The width of some block of it is not documented.
+    pub is_assumed: bool,
+    is_empty: bool,
+    pub range: TextRange,
+}
+
+/// What meets at a wire, by index into [`Grid::placed`].
+#[derive(Debug, Clone, Default)]
+struct Junction {
+    left: Vec<u32>,
+    right: Vec<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Unit {
+    Empty,
+    /// Part of an element, by index.
+    Part(u32),
+}
+
+/// Cells and rows that one word makes are counted up to this.
+const MOST_CELLS: u32 = pl7::LADDER_COLUMNS.value + 1;
+const MOST_LINES: u32 = pl7::Series::Premium.ladder_lines().value + 1;
+
+/// The function block that a cell names by its address.
+pub fn block_of(cell: Cell<'_>) -> Option<&'static block::Block> {
+    match cell.operand()? {
+        Expr::Object(it) => block::of_address(&it.address()),
+        _ => None,
+    }
+}
+
+fn width_of(element: Element, cell: Cell<'_>) -> u32 {
+    match element {
+        Element::Compare => pl7::COMPARE_COLUMNS.value,
+        Element::Operate => pl7::OPERATE_COLUMNS.value,
+        Element::Block => block_of(cell).map_or(block::COLUMNS, |it| it.columns).value,
+        _ => 1,
+    }
+}
+
+/// Rows of cells while they are read.
+#[derive(Default)]
+struct Rows {
+    units: Vec<Vec<Unit>>,
+    /// Vertical links: the row, the column whose right edge they stand at, the cell that draws them.
+    links: Vec<(usize, usize, TextRange)>,
+}
+
+impl<'t> Grid<'t> {
+    pub fn new(rung: Rung<'t>) -> Self {
+        let mut grid = Self { placed: Vec::new(), rows: Vec::new(), wires: Vec::new(), open_links: Vec::new() };
+        let mut rows = Rows::default();
+        for row in rung.rows() {
+            grid.read_row(row, &mut rows);
+        }
+        grid.wire(&rows);
+        grid
+    }
+
+    fn read_row(&mut self, row: crate::syntax::pl7::ast::RungRow<'t>, rows: &mut Rows) {
+        let at = rows.units.len();
+        let mut units = Vec::new();
+        let mut excess = None;
+        let mut is_assumed = false;
+        let mut lines = 1;
+        for cell in row.cells() {
+            let element = cell.element();
+            let count = cell.count().unwrap_or(1).min(MOST_CELLS);
+            match element {
+                Some(Element::EmptyLine) => {
+                    // An empty line is a row of its own, whatever else stands in it.
+                    lines = cell.count().unwrap_or(1).clamp(1, MOST_LINES);
+                    let missing = (pl7::LADDER_COLUMNS.value as usize).saturating_sub(units.len());
+                    units.extend(std::iter::repeat_n(Unit::Empty, missing));
+                }
+                Some(Element::EmptyCell) => units.extend(std::iter::repeat_n(Unit::Empty, count as usize)),
+                Some(Element::VLink) => {
+                    units.push(Unit::Empty);
+                    rows.links.push((at, units.len(), cell.syntax().text_range()));
+                }
+                Some(link @ (Element::HLink | Element::ShortCircuit)) => {
+                    for _ in 0..count {
+                        self.place(cell, element, at, &mut units);
+                    }
+                    if link == Element::ShortCircuit {
+                        rows.links.push((at, units.len(), cell.syntax().text_range()));
+                    }
+                }
+                _ => self.place(cell, element, at, &mut units),
+            }
+            is_assumed |= element == Some(Element::Block) && width_of(Element::Block, cell) == block::COLUMNS.value;
+            if units.len() > pl7::LADDER_COLUMNS.value as usize {
+                excess = excess.or(Some(cell));
+            }
+        }
+        let columns = u32::try_from(units.len()).unwrap_or(u32::MAX);
+        let range = row.syntax().text_range();
+        let is_empty = row.cells().all(|it| matches!(it.element(), Some(Element::EmptyLine | Element::EmptyCell)));
+        self.rows.push(Row { columns, excess, is_assumed, is_empty, range });
+        rows.units.push(units);
+        for _ in 1..lines {
+            let columns = pl7::LADDER_COLUMNS.value;
+            self.rows.push(Row { columns, excess: None, is_assumed: false, is_empty: true, range });
+            rows.units.push(vec![Unit::Empty; pl7::LADDER_COLUMNS.value as usize]);
+        }
+    }
+
+    fn place(&mut self, cell: Cell<'t>, element: Option<Element>, row: usize, units: &mut Vec<Unit>) {
+        let index = u32::try_from(self.placed.len()).unwrap_or(u32::MAX);
+        let width = element.map_or(1, |it| width_of(it, cell));
+        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
+        self.placed.push(Placed {
+            cell,
+            element,
+            row: number(row),
+            column: number(units.len()),
+            width,
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+        });
+        units.extend(std::iter::repeat_n(Unit::Part(index), width as usize));
+    }
+
+    /// Finds the wires, and what meets at them.
+    fn wire(&mut self, rows: &Rows) {
+        let Rows { units, links } = rows;
+        // A point stands at the left edge of each cell, and at the right edge of the last one of a row.
+        let mut first = Vec::with_capacity(units.len());
+        let mut points = 0_usize;
+        for row in units {
+            first.push(points);
+            points += row.len() + 1;
+        }
+        let mut sets = Sets::new(points);
+        for pair in first.windows(2) {
+            if let &[above, below] = pair {
+                sets.join(above, below);
+            }
+        }
+        let unit = |row: usize, column: usize| units.get(row).and_then(|it| it.get(column)).copied();
+        let is_full = |row: usize, column: usize| matches!(unit(row, column), Some(Unit::Part(_)));
+        // Whether a link ends at a cell beside the point, or goes on.
+        let mut drawn: rustc_hash::FxHashSet<(usize, usize)> = rustc_hash::FxHashSet::default();
+        drawn.extend(links.iter().map(|it| (it.0, it.1)));
+        let is_inside = |row: usize, edge: usize| {
+            let before = edge.checked_sub(1).and_then(|it| unit(row, it));
+            matches!((before, unit(row, edge)), (Some(Unit::Part(a)), Some(Unit::Part(b))) if a == b)
+        };
+        let meets = |row: usize, edge: usize| {
+            !is_inside(row, edge) && (edge.checked_sub(1).is_some_and(|it| is_full(row, it)) || is_full(row, edge))
+        };
+        for &(row, edge, range) in links {
+            let above = meets(row, edge) || row.checked_sub(1).is_some_and(|it| drawn.contains(&(it, edge)));
+            let below = meets(row + 1, edge) || drawn.contains(&(row + 1, edge));
+            if !above || !below {
+                self.open_links.push(range);
+            }
+            if let (Some(&upper), Some(&lower), Some(cells)) = (first.get(row), first.get(row + 1), units.get(row + 1))
+                && edge <= cells.len()
+            {
+                sets.join(upper + edge, lower + edge);
+            }
+        }
+        let mut wires = WireNames { of_root: vec![None; points], count: 1 };
+        if points > 0 {
+            wires.of_root[sets.find(0)] = Some(Wire::RAIL);
+        }
+        for index in 0..self.placed.len() {
+            let (row, column) = (self.placed[index].row as usize, self.placed[index].column as usize);
+            let width = self.placed[index].width as usize;
+            let mut inputs = Vec::new();
+            let mut outputs = Vec::new();
+            for line in 0..self.lines(index) {
+                let row = row + line;
+                let is_free = |it: usize| unit(row, it) == Some(Unit::Empty);
+                if line > 0 && !(column..column + width).all(is_free) {
+                    break;
+                }
+                let Some(&start) = first.get(row) else { break };
+                inputs.push(wires.name(sets.find(start + column)));
+                if !self.placed[index].is_action() {
+                    outputs.push(wires.name(sets.find(start + column + width)));
+                }
+            }
+            self.placed[index].inputs = inputs;
+            self.placed[index].outputs = outputs;
+        }
+        self.wires = vec![Junction::default(); wires.count as usize];
+        for (index, it) in (0..).zip(&self.placed) {
+            for wire in &it.inputs {
+                self.wires[wire.0 as usize].right.push(index);
+            }
+            for wire in &it.outputs {
+                self.wires[wire.0 as usize].left.push(index);
+            }
+        }
+    }
+
+    /// Rows that an element takes.
+    fn lines(&self, index: usize) -> usize {
+        let it = &self.placed[index];
+        match it.element {
+            Some(Element::Block) => match block_of(it.cell) {
+                Some(block) => block.inputs.len().max(block.outputs.len()),
+                // As many as are free below, for its pins are not known.
+                None => MOST_LINES as usize - 1,
+            },
+            _ => 1,
+        }
+    }
+
+    /// Rows down to the last one that holds something.
+    pub fn lines_used(&self) -> u32 {
+        let last = self.rows.iter().rposition(|it| !it.is_empty);
+        last.map_or(0, |it| u32::try_from(it + 1).unwrap_or(u32::MAX))
+    }
+
+    pub fn wire_count(&self) -> usize {
+        self.wires.len()
+    }
+
+    /// Index of a wire, below [`Self::wire_count`].
+    pub fn index(wire: Wire) -> usize {
+        wire.0 as usize
+    }
+
+    /// Whether some element, or the rail, stands at the left of a wire.
+    pub fn is_fed(&self, wire: Wire) -> bool {
+        wire == Wire::RAIL || !self.wires[wire.0 as usize].left.is_empty()
+    }
+
+    /// Whether some element stands at the right of a wire.
+    pub fn is_used(&self, wire: Wire) -> bool {
+        !self.wires[wire.0 as usize].right.is_empty()
+    }
+
+    /// The connected networks, the topmost first, of the same row the leftmost first; in each, the elements in the order
+    /// in which they are evaluated: row by row, and where a branch from below joins, that branch before what goes on
+    /// (PL7:2838-2899). An element follows all that lie on its left.
+    pub fn networks(&self) -> Vec<Vec<usize>> {
+        let mut sets = Sets::new(self.placed.len());
+        for wire in self.wires.iter().skip(1) {
+            let mut members = wire.left.iter().chain(&wire.right);
+            if let Some(&one) = members.next() {
+                members.for_each(|&it| sets.join(one as usize, it as usize));
+            }
+        }
+        let mut order = Order {
+            grid: self,
+            wire_seen: vec![false; self.wires.len()],
+            placed_seen: vec![false; self.placed.len()],
+            out: Vec::with_capacity(self.placed.len()),
+        };
+        // What nothing uses is what the rest is evaluated for.
+        for (index, it) in self.placed.iter().enumerate() {
+            if !it.outputs.iter().any(|wire| self.is_used(*wire)) {
+                order.visit(index);
+            }
+        }
+        let mut network_of: Vec<Option<usize>> = vec![None; self.placed.len()];
+        let mut networks: Vec<Vec<usize>> = Vec::new();
+        for index in 0..self.placed.len() {
+            let root = sets.find(index);
+            if network_of[root].is_none() {
+                network_of[root] = Some(networks.len());
+                networks.push(Vec::new());
+            }
+        }
+        for index in order.out {
+            if let Some(network) = network_of[sets.find(index)] {
+                networks[network].push(index);
+            }
+        }
+        networks
+    }
+
+    /// What breaks the rules of a rung, with its place and the other place that takes part.
+    pub fn flaws(&self) -> Vec<(Flaw, TextRange, Option<TextRange>)> {
+        let mut flaws = Vec::new();
+        for it in &self.placed {
+            let Some(element) = it.element else { continue };
+            let columns = pl7::LADDER_COLUMNS.value;
+            // A row that is too long is one mistake.
+            if it.end() <= columns {
+                if element.is_test() && it.end() == columns {
+                    flaws.push((Flaw::TestInActionZone(it.end()), it.range(), None));
+                } else if element.is_action() && it.end() < columns {
+                    flaws.push((Flaw::ActionInTestZone(it.end()), it.range(), None));
+                }
+            }
+            if !it.inputs.iter().any(|wire| self.is_fed(*wire)) {
+                let is_box = matches!(element, Element::Block | Element::Operate);
+                flaws.push((if is_box { Flaw::BlockNotFed } else { Flaw::NotFed }, it.range(), None));
+            }
+            let is_loose = flaws.last().is_some_and(|last| last.0 == Flaw::NotFed && last.1 == it.range());
+            // The outputs of a block may hang in the air (PL7:2808), and the right rail is an end.
+            let ends = it.end() >= columns || it.is_block() || it.outputs.is_empty();
+            if !ends && !is_loose && !it.outputs.iter().any(|wire| self.is_used(*wire)) {
+                flaws.push((Flaw::LeadsNowhere, it.range(), None));
+            }
+        }
+        flaws.extend(self.open_links.iter().map(|it| (Flaw::OpenLink, *it, None)));
+        self.bypassed(&mut flaws);
+        // The cells of one link are one place.
+        flaws.dedup_by(|a, b| a.0 == b.0 && a.1 == b.1);
+        flaws
+    }
+
+    /// Tests that a plain wire goes round: whenever power comes to where the branch starts, the wire has it at its end.
+    fn bypassed(&self, flaws: &mut Vec<(Flaw, TextRange, Option<TextRange>)>) {
+        // Beyond all controllers' limits the rung is wrong anyway.
+        if self.placed.len() > 2 * (MOST_LINES * MOST_CELLS) as usize {
+            return;
+        }
+        for (index, wire) in self.wires.iter().enumerate().skip(1) {
+            if wire.left.len() < 2 || !wire.left.iter().any(|&it| self.placed[it as usize].is_link()) {
+                continue;
+            }
+            // Wires that give this one power through links alone, from right to left.
+            let mut sources = vec![false; self.wires.len()];
+            sources[index] = true;
+            let mut chain = vec![index];
+            let mut at = 0;
+            while let Some(&from) = chain.get(at) {
+                at += 1;
+                for it in self.links_left_of(from) {
+                    for input in &it.inputs {
+                        if !std::mem::replace(&mut sources[input.0 as usize], true) {
+                            chain.push(input.0 as usize);
+                        }
+                    }
+                }
+            }
+            // Those among them that serve nothing else.
+            let mut private = vec![false; self.wires.len()];
+            private[index] = true;
+            for _ in 0..pl7::LADDER_COLUMNS.value {
+                for &it in &chain {
+                    let serves = |right: &u32| {
+                        let right = &self.placed[*right as usize];
+                        right.is_link() && right.outputs.iter().all(|it| private[it.0 as usize])
+                    };
+                    private[it] = private[it] || it != 0 && self.wires[it].right.iter().all(serves);
+                }
+            }
+            for &end in chain.iter().filter(|it| private[**it]) {
+                for &last in &self.wires[end].left {
+                    let it = &self.placed[last as usize];
+                    let is_test = it.element.is_some_and(Element::is_test) && !it.is_block();
+                    if is_test && self.comes_from(last, &sources) {
+                        let wire = chain.iter().flat_map(|&it| self.links_left_of(it)).find(|link| {
+                            link.column == it.column && link.inputs.iter().all(|it| sources[it.0 as usize])
+                        });
+                        flaws.push((Flaw::Bypassed, it.range(), wire.map(Placed::range)));
+                    }
+                }
+            }
+        }
+    }
+
+    fn links_left_of(&self, wire: usize) -> impl Iterator<Item = &Placed<'t>> {
+        self.wires[wire].left.iter().map(|&it| &self.placed[it as usize]).filter(|it| it.is_link())
+    }
+
+    /// Whether all power of an element comes through one of the wires.
+    fn comes_from(&self, element: u32, wires: &[bool]) -> bool {
+        let mut seen = vec![false; self.placed.len()];
+        let mut open = vec![element];
+        while let Some(at) = open.pop() {
+            if std::mem::replace(&mut seen[at as usize], true) {
+                continue;
+            }
+            let it = &self.placed[at as usize];
+            // The output of a block is a value of its own.
+            if it.is_block() || it.element.is_none() {
+                return false;
+            }
+            for wire in it.inputs.iter().filter(|it| !wires[it.0 as usize]) {
+                let left = &self.wires[wire.0 as usize].left;
+                if *wire == Wire::RAIL || left.is_empty() {
+                    return false;
+                }
+                open.extend(left);
+            }
+        }
+        true
+    }
+}
+
+struct Order<'g, 't> {
+    grid: &'g Grid<'t>,
+    wire_seen: Vec<bool>,
+    placed_seen: Vec<bool>,
+    out: Vec<usize>,
+}
+
+impl Order<'_, '_> {
+    /// Emits an element behind all on its left. A stack of its own, for a row may be as long as the text.
+    fn visit(&mut self, element: usize) {
+        enum Task {
+            Enter(usize),
+            Leave(usize),
+        }
+        let mut tasks = vec![Task::Enter(element)];
+        while let Some(task) = tasks.pop() {
+            match task {
+                Task::Leave(it) => self.out.push(it),
+                Task::Enter(it) => {
+                    if std::mem::replace(&mut self.placed_seen[it], true) {
+                        continue;
+                    }
+                    tasks.push(Task::Leave(it));
+                    for wire in self.grid.placed[it].inputs.iter().rev() {
+                        if !std::mem::replace(&mut self.wire_seen[wire.0 as usize], true) {
+                            let left = &self.grid.wires[wire.0 as usize].left;
+                            tasks.extend(left.iter().rev().map(|it| Task::Enter(*it as usize)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+struct WireNames {
+    of_root: Vec<Option<Wire>>,
+    count: u32,
+}
+
+impl WireNames {
+    fn name(&mut self, root: usize) -> Wire {
+        *self.of_root[root].get_or_insert_with(|| {
+            self.count += 1;
+            Wire(self.count - 1)
+        })
+    }
+}
+
+/// Disjoint sets.
+struct Sets(Vec<usize>);
+
+impl Sets {
+    fn new(len: usize) -> Self {
+        Self((0..len).collect())
+    }
+
+    fn find(&mut self, mut at: usize) -> usize {
+        while self.0[at] != at {
+            self.0[at] = self.0[self.0[at]];
+            at = self.0[at];
+        }
+        at
+    }
+
+    /// The lower root stays.
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.0[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::pl7::ast::Root;
+
+    /// Runs a check on the grid of the rows.
+    fn with<T>(rows: &str, check: impl FnOnce(&Grid<'_>) -> T) -> T {
+        let parse = crate::syntax::pl7::parse_ld(&format!("RUNG\n{rows}\nEND_RUNG"));
+        assert_eq!(parse.errors(), [], "{rows}");
+        let rung = Root::cast(parse.syntax()).and_then(|it| it.rungs().next()).expect("a rung");
+        check(&Grid::new(rung))
+    }
+
+    /// Operands of each connected network in the order of evaluation.
+    fn order(rows: &str) -> Vec<String> {
+        with(rows, |grid| {
+            let name = |it: &usize| grid.placed[*it].cell.operand().map(|it| it.syntax().text().into_owned());
+            let text = |it: &Vec<usize>| {
+                let tests = it.iter().filter(|it| !grid.placed[**it].is_link());
+                tests.filter_map(name).collect::<Vec<_>>().join(" ")
+            };
+            grid.networks().iter().map(text).collect()
+        })
+    }
+
+    fn flaws(rows: &str) -> Vec<Flaw> {
+        with(rows, |grid| grid.flaws().into_iter().map(|it| it.0).collect())
+    }
+
+    #[test]
+    fn branches_are_evaluated_where_they_join() {
+        // PL7:2886-2895: A, B, C; then D; then E; then F and G; then the coil H.
+        let rows = "OPEN_CONTACT(A),OPEN_CONTACT(B),OPEN_CONTACT(C),SHORT_CIRCUIT,OPEN_CONTACT(E),SHORT_CIRCUIT(5),COIL(H);\n\
+                    OPEN_CONTACT(D),H_LINK(3),EMPTY_CELL(5),V_LINK,EMPTY_CELL;\n\
+                    OPEN_CONTACT(F),OPEN_CONTACT(G),H_LINK(8),EMPTY_CELL;";
+        assert_eq!(order(rows), ["A B C D E F G H"]);
+        assert_eq!(flaws(rows), []);
+    }
+
+    #[test]
+    fn networks_that_no_link_joins_are_apart() {
+        let rows = "OPEN_CONTACT(A),H_LINK(9),COIL(X);\nEMPTY_LINE;\n\
+                    OPEN_CONTACT(B),SHORT_CIRCUIT,H_LINK(8),COIL(Y);\nOPEN_CONTACT(C),H_LINK,EMPTY_CELL(9);";
+        assert_eq!(order(rows), ["A X", "B C Y"]);
+        // The rails join nothing.
+        assert_eq!(order("OPEN_CONTACT(A),H_LINK(9),COIL(X);\nOPEN_CONTACT(B),H_LINK(9),COIL(Y);"), ["A X", "B Y"]);
+    }
+
+    #[test]
+    fn blocks_have_a_wire_for_each_pin() {
+        let rows =
+            "P_CONTACT(R),BLOCK(%C8),EMPTY_CELL(7);\nEMPTY_CELL(4),H_LINK(6),COIL(D);\nOPEN_CONTACT(U),EMPTY_CELL(10);";
+        assert_eq!(order(rows), ["R U %C8 D"]);
+        with(rows, |grid| {
+            let block = grid.placed.iter().find(|it| it.is_block()).expect("a block");
+            let fed: Vec<bool> = block.inputs.iter().map(|it| grid.is_fed(*it)).collect();
+            let used: Vec<bool> = block.outputs.iter().map(|it| grid.is_used(*it)).collect();
+            assert_eq!((fed, used), (vec![true, false, true], vec![false, true, false]));
+        });
+        assert_eq!(flaws(rows), []);
+        // What stands in a row below ends the block.
+        let rows = "OPEN_CONTACT(R),BLOCK(%C8),EMPTY_CELL(7);\nOPEN_CONTACT(A),H_LINK(9),COIL(X);";
+        assert_eq!(with(rows, |grid| grid.placed[1].inputs.len()), 1);
+    }
+
+    #[test]
+    fn flaws_of_lines() {
+        assert_eq!(flaws("OPEN_CONTACT(A),H_LINK(9),COIL(X);"), []);
+        assert_eq!(flaws("OPEN_CONTACT(A),H_LINK(8),COIL(X),EMPTY_CELL;"), [Flaw::ActionInTestZone(10)]);
+        assert_eq!(flaws("H_LINK(10),OPEN_CONTACT(A);"), [Flaw::TestInActionZone(11)]);
+        assert_eq!(flaws("EMPTY_CELL,OPEN_CONTACT(A),H_LINK(8),COIL(X);"), [Flaw::NotFed]);
+        assert_eq!(flaws("EMPTY_CELL,H_LINK(3),EMPTY_CELL(7);"), [Flaw::NotFed]);
+        assert_eq!(flaws("OPEN_CONTACT(A),H_LINK(3),EMPTY_CELL(7);"), [Flaw::LeadsNowhere]);
+        assert_eq!(flaws("OPEN_CONTACT(A),SHORT_CIRCUIT(9),COIL(X);"), [Flaw::OpenLink]);
+        assert_eq!(flaws("V_LINK,EMPTY_CELL(10);\nH_LINK(10),COIL(X);"), [Flaw::OpenLink]);
+        assert_eq!(flaws("EMPTY_CELL(2),BLOCK(%TM0),EMPTY_CELL(7);"), [Flaw::BlockNotFed]);
+        assert_eq!(flaws("EMPTY_CELL(7),OPERATE %MW0:=1 END_BLOCK;"), [Flaw::BlockNotFed]);
+    }
+
+    #[test]
+    fn wires_that_go_round() {
+        let bypassed = |rows: &str| flaws(rows).contains(&Flaw::Bypassed);
+        assert!(bypassed("OPEN_CONTACT(A),SHORT_CIRCUIT,H_LINK(8),COIL(X);\nH_LINK(2),EMPTY_CELL(9);"));
+        assert!(bypassed(
+            "SHORT_CIRCUIT,OPEN_CONTACT(A),SHORT_CIRCUIT,H_LINK(7),COIL(X);\nEMPTY_CELL,H_LINK(2),EMPTY_CELL(8);"
+        ));
+        // The branch holds a contact too.
+        assert!(!bypassed("OPEN_CONTACT(A),SHORT_CIRCUIT,H_LINK(8),COIL(X);\nH_LINK,OPEN_CONTACT(B),EMPTY_CELL(9);"));
+        // Another line takes what the contact lets through.
+        assert!(!bypassed(
+            "OPEN_CONTACT(A),SHORT_CIRCUIT,OPEN_CONTACT(B),H_LINK(7),COIL(X);\nEMPTY_CELL(2),H_LINK(8),COIL(Y);"
+        ));
+    }
+
+    #[test]
+    fn numbers_beyond_reason_take_no_memory() {
+        let rows =
+            "H_LINK(4294967295),EMPTY_CELL(99999999999),COIL(X);\nEMPTY_LINE(4294967295);\nOPEN_CONTACT(A),COIL(Y);";
+        with(rows, |grid| assert!(grid.rows.len() < 64 && grid.placed.len() < 64));
+    }
+}

@@ -1,0 +1,579 @@
+//! PL7 ladder to the model.
+//!
+//! In each connected network the controller takes the state of the contacts, then executes functions, blocks and
+//! subroutines, then writes the coils, then leaves (PL7:2874-2884). A coil is therefore not seen by a contact of its own
+//! network.
+
+use rowan::TextRange;
+use rustc_hash::FxHashMap;
+use smol_str::{SmolStr, ToSmolStr as _};
+
+use super::pl7::{self, Kind, Pl7};
+use crate::model::UnitModel;
+use crate::model::entity::{Entity, Part};
+use crate::model::expr::{self, ExprId, Exprs, ObjectId};
+use crate::model::ladder::{Flaw, Grid, Placed, Wire, block_of};
+use crate::model::object::{self, Class, Object};
+use crate::model::unit::{Call, Callee, Leave, Mode, OddityKind, Pin, StatementKind};
+use crate::syntax::pl7::ast::{self, Expr, Stmt};
+use crate::syntax::pl7::ladder_words::Element;
+use crate::syntax::{AstNode as _, Language, SyntaxNode};
+
+pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
+    let is_transition = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
+        || is_bare_receptivity(root);
+    let mut lowering = Lowering { pl7: Pl7::new(root, entity, Language::Pl7Ld), is_transition };
+    lowering.pl7.b.set_back_targets(pl7::back_targets(root, text));
+    for rung in ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs) {
+        lowering.rung(rung);
+    }
+    lowering.pl7.b.finish()
+}
+
+/// One rung with a `(#)` and nothing that says what it belongs to: what documents print of a receptivity.
+fn is_bare_receptivity(root: SyntaxNode<'_>) -> bool {
+    let Some(root) = ast::Root::cast(root) else { return false };
+    let mut rungs = root.rungs();
+    let (Some(only), None) = (rungs.next(), rungs.next()) else { return false };
+    // A heading, or the `PROGRAM` of an exchange file.
+    let is_named = root.headings().next().is_some() || root.syntax().tokens().any(|it| !it.kind().is_trivia());
+    !is_named && only.rows().flat_map(|it| it.cells()).any(|it| it.element() == Some(Element::HashCoil))
+}
+
+struct Lowering {
+    pl7: Pl7,
+    is_transition: bool,
+}
+
+/// A rung while it is executed. Its connected networks share no wire but the rail.
+struct Run {
+    /// Whether each wire has power.
+    power: Vec<ExprId>,
+    /// Conditions of contacts and comparisons, by element.
+    tests: FxHashMap<usize, ExprId>,
+}
+
+/// A bit that a connected network of a rung uses.
+struct Use {
+    object: ObjectId,
+    network: usize,
+    range: TextRange,
+}
+
+impl Lowering {
+    fn rung(&mut self, rung: ast::Rung<'_>) {
+        self.pl7.b.next_network();
+        if let Some(label) = rung.label() {
+            self.pl7.label(&label);
+        }
+        let grid = Grid::new(rung);
+        for (flaw, range, related) in grid.flaws() {
+            self.flaw(flaw, range).related.extend(related.map(|it| (it, "this wire goes round it")));
+        }
+        let networks = grid.networks();
+        let mut contacts = Vec::new();
+        let mut coils = Vec::new();
+        let mut run = Run { power: vec![Exprs::FALSE; grid.wire_count()], tests: FxHashMap::default() };
+        run.power[Grid::index(Wire::RAIL)] = Exprs::TRUE;
+        for (number, elements) in networks.iter().enumerate() {
+            self.network(&grid, elements, number, &mut run, &mut contacts, &mut coils);
+        }
+        self.read_before_driven(&contacts, &coils);
+        for it in &grid.placed {
+            self.allowed_in_transition(it);
+        }
+    }
+
+    fn flaw(&mut self, flaw: Flaw, range: TextRange) -> &mut crate::model::unit::Oddity {
+        self.pl7.b.oddity(OddityKind::Ladder(flaw), range, "")
+    }
+
+    fn network(
+        &mut self,
+        grid: &Grid<'_>,
+        elements: &[usize],
+        number: usize,
+        run: &mut Run,
+        contacts: &mut Vec<Use>,
+        coils: &mut Vec<Use>,
+    ) {
+        for &index in elements {
+            let it = &grid.placed[index];
+            if !matches!(it.element, Some(Element::HLink | Element::ShortCircuit)) {
+                self.pl7.b.instruction(it.range());
+            }
+            if let Some(value) = self.test(it, |object, range| contacts.push(Use { object, network: number, range })) {
+                run.tests.insert(index, value);
+            }
+        }
+        for &index in elements {
+            self.conduct(grid, index, run);
+        }
+        for &index in elements {
+            let it = &grid.placed[index];
+            if let Some((object, range)) = self.coil(it, run.at(it)) {
+                coils.push(Use { object, network: number, range });
+            }
+        }
+        for &index in elements {
+            let it = &grid.placed[index];
+            self.leave(it, run.at(it));
+        }
+    }
+
+    /// State of a contact or comparison.
+    fn test(&mut self, it: &Placed<'_>, mut contact: impl FnMut(ObjectId, TextRange)) -> Option<ExprId> {
+        let element = it.element?;
+        if element == Element::Compare {
+            return Some(match it.cell.comparison() {
+                Some(expr) => match self.pl7.expr(&expr) {
+                    (_, Kind::Number | Kind::Float) => {
+                        let message = "a comparison block takes a comparison, not a number".to_owned();
+                        self.operand_type(message, &expr)
+                    }
+                    (value, _) => value,
+                },
+                None => self.pl7.b.exprs().opaque(),
+            });
+        }
+        if !element.is_test() || element == Element::Block {
+            return None;
+        }
+        let value = match it.cell.operand() {
+            Some(Expr::Literal(literal)) => {
+                let (value, kind) = self.pl7.literal(&literal);
+                match (kind, self.pl7.b.exprs().get(value)) {
+                    (Kind::Bit, _) => value,
+                    (_, expr::Expr::Int(0)) => Exprs::FALSE,
+                    (_, expr::Expr::Int(1)) => Exprs::TRUE,
+                    _ => self.takes_a_bit("a contact", &Expr::Literal(literal)),
+                }
+            }
+            Some(operand) => match self.pl7.place(&operand) {
+                Some((object, _)) if self.pl7.kind(object).is_number() => self.takes_a_bit("a contact", &operand),
+                Some((object, at)) => {
+                    contact(object, at);
+                    match element {
+                        Element::Rising => self.pl7.b.edge(object, true, at),
+                        Element::Falling => self.pl7.b.edge(object, false, at),
+                        _ => self.pl7.read(object, at),
+                    }
+                }
+                None => self.pl7.expr(&operand).0,
+            },
+            None => self.pl7.b.exprs().opaque(),
+        };
+        Some(if element == Element::Closed { self.pl7.b.exprs().not(value) } else { value })
+    }
+
+    fn takes_a_bit(&mut self, what: &str, operand: &Expr<'_>) -> ExprId {
+        let text = operand.syntax().text();
+        self.operand_type(format!("{what} takes a bit, and `{text}` is none"), operand)
+    }
+
+    fn operand_type(&mut self, message: String, operand: &Expr<'_>) -> ExprId {
+        let text = operand.syntax().text().into_owned();
+        self.pl7.b.oddity(OddityKind::OperandType(message), operand.syntax().text_range(), text);
+        self.pl7.b.exprs().opaque()
+    }
+
+    /// Lets power through an element, and executes blocks, operations and calls.
+    fn conduct(&mut self, grid: &Grid<'_>, index: usize, run: &mut Run) {
+        let it = &grid.placed[index];
+        let before = run.at(it);
+        let through = match it.element {
+            Some(Element::HLink | Element::ShortCircuit) => before,
+            Some(Element::Block) => return self.block(grid, it, run),
+            Some(Element::Operate) => return self.operate(it, before),
+            Some(Element::Call) => {
+                if let Some((token, number)) = it.cell.subroutine() {
+                    self.pl7.subroutine(number, token.text(), before, token.text_range(), it.range());
+                }
+                return;
+            }
+            Some(element) if element.is_action() => return,
+            _ => {
+                let value = run.tests.get(&index).copied();
+                let value = value.unwrap_or_else(|| self.pl7.b.exprs().opaque());
+                self.pl7.b.exprs().and(before, value)
+            }
+        };
+        for &wire in &it.outputs {
+            run.join(&mut self.pl7, wire, through);
+        }
+    }
+
+    fn block(&mut self, grid: &Grid<'_>, it: &Placed<'_>, run: &mut Run) {
+        let place = it.cell.operand().and_then(|it| self.pl7.place(&it));
+        let is_block = place.is_some_and(|(object, _)| self.pl7.b.model.object(object).class == Class::Block);
+        match (place, block_of(it.cell)) {
+            (Some((object, at)), Some(block)) if is_block => {
+                let mut is_driven = false;
+                for (&wire, name) in it.inputs.iter().zip(block.inputs) {
+                    // An input without a wire is 0 (PL7:2813).
+                    if grid.is_fed(wire) {
+                        is_driven = true;
+                        let when = run.power[Grid::index(wire)];
+                        self.pl7.b.drive(object, pl7::pin(block.letters, name), when, None, at, it.range());
+                    }
+                }
+                if !is_driven {
+                    self.pl7.b.touch(object, Mode::Drive(Pin::Whole), at);
+                }
+                for (row, &wire) in it.outputs.iter().enumerate().filter(|it| grid.is_used(*it.1)) {
+                    let value = match block.outputs.get(row) {
+                        Some(name) => self.output(object, name, at),
+                        None => Exprs::FALSE,
+                    };
+                    run.join(&mut self.pl7, wire, value);
+                }
+            }
+            (place, _) => {
+                if let (Some((object, at)), Some(operand)) = (place, it.cell.operand()) {
+                    let data = self.pl7.b.model.object(object);
+                    if data.class == Class::Symbol {
+                        let name = data.text.clone();
+                        self.instance(&name, at, it.range());
+                    } else if data.class != Class::Indirect {
+                        let text = operand.syntax().text();
+                        self.operand_type(format!("`{text}` is no function block"), &operand);
+                    }
+                }
+                for &wire in it.outputs.iter().filter(|it| grid.is_used(**it)) {
+                    let value = self.pl7.b.exprs().opaque();
+                    run.join(&mut self.pl7, wire, value);
+                }
+            }
+        }
+    }
+
+    fn output(&mut self, object: ObjectId, name: &str, at: TextRange) -> ExprId {
+        let address = format!("{}.{name}", self.pl7.b.model.object(object).text);
+        let output = object::pl7::parse(&address).unwrap_or_else(|_| Object::symbol(&address));
+        let output = self.pl7.b.object(output);
+        self.pl7.read(output, at)
+    }
+
+    /// A block under a symbol: an instance of a DFB, as far as it shows.
+    fn instance(&mut self, name: &str, at: TextRange, range: TextRange) {
+        let anchor = self.pl7.b.anchor(at);
+        let call = Call {
+            callee: Callee::Instance(name.to_lowercase().into()),
+            text: name.into(),
+            statement: 0,
+            anchor,
+            when: Exprs::TRUE,
+            instance: None,
+            instance_range: None,
+            arguments: Vec::new(),
+            full: true,
+        };
+        self.pl7.b.call(call, range);
+        self.pl7.b.wipe();
+    }
+
+    /// An operation block: done when it has power.
+    fn operate(&mut self, it: &Placed<'_>, when: ExprId) {
+        let before = self.pl7.b.path();
+        let inside = self.pl7.b.exprs().and(before, when);
+        self.pl7.b.enter(inside, None);
+        for statement in it.cell.operations() {
+            match statement {
+                Stmt::Assign(it) => self.pl7.assignment(&it),
+                Stmt::Call(it) => self.pl7.call_stmt(&it),
+                Stmt::Expr(it) => {
+                    if let Some(expr) = it.expr() {
+                        self.pl7.expr(&expr);
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.pl7.b.enter(before, None);
+    }
+
+    /// Writes a coil; gives the bit that takes the condition.
+    fn coil(&mut self, it: &Placed<'_>, when: ExprId) -> Option<(ObjectId, TextRange)> {
+        let range = it.range();
+        let element = it.element?;
+        match element {
+            Element::HashCoil => {
+                self.pl7.b.statement(StatementKind::Branch { condition: when }, range);
+                return None;
+            }
+            Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil => {}
+            _ => return None,
+        }
+        let operand = it.cell.operand()?;
+        let Some((object, at)) = self.pl7.place(&operand) else {
+            self.takes_a_bit("a coil", &operand);
+            return None;
+        };
+        let class = self.pl7.b.model.object(object).class;
+        if class == Class::Indirect {
+            return None;
+        }
+        if class == Class::Block || self.pl7.kind(object).is_number() {
+            self.takes_a_bit("a coil", &operand);
+            return None;
+        }
+        match element {
+            Element::SetCoil => self.pl7.b.set(object, when, at, range),
+            Element::ResetCoil => self.pl7.b.reset(object, when, at, range),
+            Element::NotCoil => {
+                let value = self.pl7.b.exprs().not(when);
+                self.pl7.b.assign(object, true, value, at, range);
+            }
+            _ => self.pl7.b.assign(object, false, when, at, range),
+        }
+        matches!(element, Element::Coil | Element::NotCoil).then_some((object, at))
+    }
+
+    fn leave(&mut self, it: &Placed<'_>, when: ExprId) {
+        let range = it.range();
+        match it.element {
+            Some(Element::Jump) => {
+                if let Some(label) = it.cell.label() {
+                    self.pl7.jump(label.text(), label.text_range(), when, range);
+                } else if let Some(Expr::Name(name)) = it.cell.operand()
+                    && let Some(name) = name.name()
+                {
+                    self.pl7.jump(name.text(), name.text_range(), when, range);
+                }
+            }
+            Some(Element::Return) => self.pl7.leave(when, Leave::Subroutine, range),
+            Some(Element::Halt) => self.pl7.halt(when, range),
+            _ => {}
+        }
+    }
+
+    /// A contact has the former value of a bit that a later network of the rung drives. Where each of two networks reads
+    /// what the other one drives, no order is better.
+    fn read_before_driven(&mut self, contacts: &[Use], coils: &[Use]) {
+        let mut driven: FxHashMap<ObjectId, (usize, usize)> = FxHashMap::default();
+        for (index, coil) in coils.iter().enumerate() {
+            driven.entry(coil.object).or_insert((coil.network, index));
+        }
+        // Which networks read what another one drives.
+        let depends: rustc_hash::FxHashSet<(usize, usize)> = contacts
+            .iter()
+            .filter_map(|it| Some((it.network, driven.get(&it.object)?.0)))
+            .filter(|(reader, driver)| reader != driver)
+            .collect();
+        for contact in contacts {
+            let Some(&(network, coil)) = driven.get(&contact.object) else { continue };
+            let is_fixed = self.pl7.b.model.object(contact.object).is_fixed();
+            if !is_fixed || network <= contact.network || depends.contains(&(network, contact.network)) {
+                continue;
+            }
+            let text: SmolStr = self.pl7.b.model.object(contact.object).text.to_smolstr();
+            let oddity = self.pl7.b.oddity(OddityKind::Ladder(Flaw::ReadBeforeDriven), contact.range, text);
+            oddity.related.push((coils[coil].range, "driven here, further down in the same rung"));
+        }
+    }
+
+    fn allowed_in_transition(&mut self, it: &Placed<'_>) {
+        let Some(element) = it.element else { return };
+        let is_coil = matches!(element, Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil);
+        let flaw = match element {
+            Element::HashCoil if !self.is_transition => Flaw::HashOutsideTransition,
+            _ if !self.is_transition || element == Element::HashCoil => return,
+            _ if is_coil => Flaw::CoilInTransition,
+            Element::Block => Flaw::ElementInTransition,
+            _ if element.is_action() => Flaw::ElementInTransition,
+            _ => return,
+        };
+        self.flaw(flaw, it.range());
+    }
+}
+
+impl Run {
+    /// Power at the left edge of an element.
+    fn at(&self, it: &Placed<'_>) -> ExprId {
+        it.inputs.first().map_or(Exprs::FALSE, |it| self.power[Grid::index(*it)])
+    }
+
+    fn join(&mut self, pl7: &mut Pl7, wire: Wire, value: ExprId) {
+        let before = self.power[Grid::index(wire)];
+        self.power[Grid::index(wire)] = pl7.b.exprs().or(before, value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::Task;
+    use crate::model::lower::testing::show;
+
+    fn part(rungs: &str, part: Part) -> UnitModel {
+        let parse = crate::syntax::pl7::parse_ld(rungs);
+        assert_eq!(parse.errors(), [], "{rungs}");
+        lower(parse.syntax(), rungs, Entity::Pl7 { task: Task::Mast, section: None, part })
+    }
+
+    fn model(rows: &str) -> UnitModel {
+        part(&format!("RUNG\n{rows}\nEND_RUNG"), Part::Main)
+    }
+
+    /// What each statement does, with the path to it.
+    fn statements(rows: &str) -> Vec<String> {
+        let model = model(rows);
+        let name = |access: u32| model.object(model.accesses[access as usize].object).text.to_string();
+        let mut lines = Vec::new();
+        for it in &model.statements {
+            let what = match it.kind {
+                StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
+                    format!("{} := {}", name(access), show(&model, value))
+                }
+                StatementKind::Set { access, when } => format!("set {} when {}", name(access), show(&model, when)),
+                StatementKind::Reset { access, when } => format!("reset {} when {}", name(access), show(&model, when)),
+                StatementKind::Drive { access, pin, when, .. } => {
+                    format!("{} of {} when {}", pin.describe(), name(access), show(&model, when))
+                }
+                StatementKind::Call(call) => {
+                    let call = &model.calls[call as usize];
+                    format!("call {} when {}", call.text, show(&model, call.when))
+                }
+                StatementKind::Jump(jump) => format!("jump when {}", show(&model, model.jumps[jump as usize].when)),
+                StatementKind::Return { when, .. } => format!("return when {}", show(&model, when)),
+                StatementKind::Branch { condition } => format!("branch on {}", show(&model, condition)),
+                StatementKind::Halt => "halt".to_owned(),
+                _ => continue,
+            };
+            let path = show(&model, it.path);
+            lines.push(if path == "true" { what } else { format!("{path}: {what}") });
+        }
+        lines
+    }
+
+    fn flaws(model: &UnitModel) -> Vec<Flaw> {
+        let flaw = |it: &crate::model::unit::Oddity| match it.kind {
+            OddityKind::Ladder(flaw) => Some(flaw),
+            _ => None,
+        };
+        model.oddities.iter().filter_map(flaw).collect()
+    }
+
+    #[test]
+    fn power_flows_through_contacts_and_links() {
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),SHORT_CIRCUIT,CLOSED_CONTACT(%M1),H_LINK(7),COIL(%M5);\n\
+                 P_CONTACT(%M2),N_CONTACT(%M3),EMPTY_CELL(9);"
+            ),
+            ["%M5 := ((%M0 | (^%M2 & v%M3)) & !%M1)"]
+        );
+        // A link both ways: what comes from below serves the line above, and the other way round.
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),SHORT_CIRCUIT,OPEN_CONTACT(%M1),H_LINK(7),COIL(%M5);\n\
+                 OPEN_CONTACT(%M2),H_LINK,OPEN_CONTACT(%M3),H_LINK(7),NOT_COIL(%M6);"
+            ),
+            ["%M5 := ((%M0 | %M2) & %M1)", "%M6 := !((%M0 | %M2) & %M3)"]
+        );
+        assert_eq!(statements("EMPTY_CELL(10),COIL(%M5);"), ["%M5 := false"]);
+        assert_eq!(statements("OPEN_CONTACT(1),CLOSED_CONTACT(FALSE),H_LINK(8),COIL(%M5);"), ["%M5 := true"]);
+    }
+
+    #[test]
+    fn actions() {
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),SHORT_CIRCUIT(9),SET_COIL(%M5);\nEMPTY_CELL(9),V_LINK,RESET_COIL(%M6);\n\
+                 EMPTY_CELL(9),V_LINK,CALL_COIL(SR5);\nEMPTY_CELL(10),JUMP_COIL(%L10);"
+            ),
+            ["call SR5 when %M0", "set %M5 when %M0", "reset %M6 when %M0", "jump when %M0"]
+        );
+        assert_eq!(
+            statements("OPEN_CONTACT(%M0),H_LINK(9),RETURN_COIL;\nOPEN_CONTACT(%M1),H_LINK(9),HALT_COIL();"),
+            ["return when %M0", "!%M0: halt"]
+        );
+        assert_eq!(statements("OPEN_CONTACT(%M0),H_LINK(9),HASH_COIL;"), ["branch on %M0"]);
+    }
+
+    #[test]
+    fn blocks() {
+        assert_eq!(
+            statements("OPEN_CONTACT(%M0),BLOCK(%TM1),H_LINK(7),COIL(%M5);"),
+            ["start of %TM1 when %M0", "%M5 := %TM1.Q"]
+        );
+        assert_eq!(
+            statements(
+                "OPEN_CONTACT(%M0),BLOCK(%C8),H_LINK(6),COIL(%M5);\nEMPTY_CELL(4),H_LINK(6),COIL(%M6);\n\
+                 OPEN_CONTACT(%M1),EMPTY_CELL(10);\nOPEN_CONTACT(%M2),EMPTY_CELL(10);"
+            ),
+            [
+                "reset of %C8 when %M0",
+                "count-up of %C8 when %M1",
+                "count-down of %C8 when %M2",
+                "%M5 := %C8.E",
+                "%M6 := %C8.D"
+            ]
+        );
+        assert_eq!(statements("H_LINK,BLOCK(%MN2),EMPTY_CELL(7);"), ["start of %MN2 when true"]);
+        // An output wired to the input of the next.
+        assert_eq!(
+            statements("OPEN_CONTACT(%M0),BLOCK(%TM1),BLOCK(%TM2),H_LINK(5),COIL(%M5);"),
+            ["start of %TM1 when %M0", "start of %TM2 when %TM1.Q", "%M5 := %TM2.Q"]
+        );
+        assert_eq!(statements("H_LINK,BLOCK(Pump),EMPTY_CELL(7);"), ["call Pump when true"]);
+    }
+
+    #[test]
+    fn comparisons_and_operations() {
+        assert_eq!(
+            statements("COMPARE %MW0>5 AND %M1 END_BLOCK,H_LINK(5),OPERATE %MW1:=%MW2+1; INC %MW3 END_BLOCK;"),
+            ["((%MW0 > 5) & %M1): %MW1 := Add(%MW2, 1)", "((%MW0 > 5) & %M1): %MW3 := Add(%MW3, 1)"]
+        );
+    }
+
+    #[test]
+    fn contacts_are_read_before_coils_are_written() {
+        let versions = |rows: &str| -> Vec<bool> {
+            let it = model(rows);
+            let reads = it.accesses.iter().filter(|a| a.mode == Mode::Read && it.object(a.object).text == "%M5");
+            reads.map(|it| it.exposed).collect()
+        };
+        // One network: the contact does not see the coil. Two networks: it does.
+        let joined = "OPEN_CONTACT(%M0),SHORT_CIRCUIT,H_LINK(8),COIL(%M5);\nEMPTY_CELL(2),OPEN_CONTACT(%M5),H_LINK(7),COIL(%M6);";
+        assert_eq!(versions(joined), [true]);
+        let apart = "OPEN_CONTACT(%M0),H_LINK(9),COIL(%M5);\nOPEN_CONTACT(%M5),H_LINK(9),COIL(%M6);";
+        assert_eq!(versions(apart), [false]);
+    }
+
+    #[test]
+    fn order_of_networks() {
+        let late = "OPEN_CONTACT(%M5),H_LINK(9),COIL(%M6);\nOPEN_CONTACT(%M0),H_LINK(9),COIL(%M5);";
+        assert_eq!(flaws(&model(late)), [Flaw::ReadBeforeDriven]);
+        let interlock = "OPEN_CONTACT(%M0),CLOSED_CONTACT(%M6),H_LINK(8),COIL(%M5);\n\
+                         OPEN_CONTACT(%M1),CLOSED_CONTACT(%M5),H_LINK(8),COIL(%M6);";
+        assert_eq!(flaws(&model(interlock)), []);
+    }
+
+    #[test]
+    fn transitions() {
+        let transition = || Part::Chart("CHART - PAGE 0 %X(0) --> %X(1)".into());
+        let rung =
+            "RUNG\nOPEN_CONTACT(%M0),BLOCK(%TM0),SHORT_CIRCUIT(7),HASH_COIL;\nEMPTY_CELL(10),COIL(%M1);\nEND_RUNG";
+        assert_eq!(flaws(&part(rung, transition())), [Flaw::ElementInTransition, Flaw::CoilInTransition]);
+        let receptivity = "RUNG\nH_LINK(10),HASH_COIL;\nEND_RUNG";
+        assert_eq!(flaws(&part(receptivity, Part::Main)), []);
+        let section = format!("LD : MAST - MAIN\n{receptivity}");
+        assert_eq!(flaws(&part(&section, Part::Main)), [Flaw::HashOutsideTransition]);
+    }
+
+    #[test]
+    fn operands_that_do_not_fit() {
+        let kinds = |rows: &str| model(rows).oddities.into_iter().map(|it| it.kind).collect::<Vec<_>>();
+        for rows in [
+            "OPEN_CONTACT(%MW0),H_LINK(9),COIL(%M0);",
+            "OPEN_CONTACT(5),H_LINK(9),COIL(%M0);",
+            "OPEN_CONTACT(%M0),H_LINK(9),COIL(%TM0);",
+            "COMPARE %MW0+1 END_BLOCK,H_LINK(8),COIL(%M0);",
+            "H_LINK,BLOCK(%MW0),EMPTY_CELL(7);",
+        ] {
+            assert!(matches!(kinds(rows).as_slice(), [OddityKind::OperandType(_)]), "{rows}: {:?}", kinds(rows));
+        }
+        assert!(matches!(kinds("OPEN_CONTACT(%M),H_LINK(9),COIL(%M0);").as_slice(), [OddityKind::Address(_)]));
+    }
+}

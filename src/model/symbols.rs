@@ -1,0 +1,48 @@
+//! Symbols: the names that a program gives to its objects, as its files of variables declare them.
+//!
+//! PL7 writes a symbol's first letter in upper case and the others in lower case, whatever was typed (PL7:1200-1202), so
+//! names are compared by their [`key`].
+
+use rowan::TextRange;
+use smol_str::SmolStr;
+
+use super::object::Object;
+
+/// One declaration: `Pump AT %M0 : EBOOL := TRUE (*comment*);`, or an instance of a DFB, which has no address.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Symbol {
+    /// As written.
+    pub name: SmolStr,
+    /// What the address names. Its text is the address. `None` without an address, or with one that is none.
+    pub object: Option<Object>,
+    /// The type as written, blanks removed; empty when the declaration has none.
+    pub ty: SmolStr,
+    /// The initial value as written.
+    pub initial: Option<SmolStr>,
+    /// The comment without its delimiters and the blanks around it.
+    pub comment: Option<SmolStr>,
+    /// Place of the name, an index into the anchors of the unit's model.
+    pub anchor: u32,
+}
+
+/// A comment whose length the vendor limits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Remark {
+    pub kind: RemarkKind,
+    /// Characters between the delimiters, blanks around the text not counted.
+    pub characters: u32,
+    pub range: TextRange,
+}
+
+/// What a comment belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RemarkKind {
+    Symbol,
+    /// A section or subroutine, in the header of its source unit.
+    Module,
+}
+
+/// What makes two spellings the same symbol.
+pub fn key(name: &str) -> SmolStr {
+    name.to_lowercase().into()
+}
