@@ -160,9 +160,6 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let mut facts = UnitFacts::new(&model);
     facts.has_gaps |=
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
-    if let Some(chart) = &mut facts.chart {
-        chart.has_gaps = !tree.errors().is_empty();
-    }
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
     let target = settings.target_or(family, *named_controller(db, unit.file(db)));
@@ -502,9 +499,20 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
     let mut code = Code::default();
     for &(unit, offset) in layout(db, file) {
         let place = |it: TextRange| it + TextSize::new(offset);
+        // The words around the rows of a rung are no code of their own, so that the rung's own comment covers all of it.
+        let mut is_frame = false;
         for event in tree(db, unit).syntax().walk() {
             let token = match event {
-                WalkEvent::Enter(it) if it.kind() == SyntaxKind::Sentence => {
+                WalkEvent::Enter(it) | WalkEvent::Leave(it) if it.kind() == SyntaxKind::RungRow => {
+                    is_frame = matches!(event, WalkEvent::Leave(_));
+                    continue;
+                }
+                WalkEvent::Leave(it) if it.kind() == SyntaxKind::Rung => {
+                    is_frame = false;
+                    continue;
+                }
+                WalkEvent::Enter(it) if matches!(it.kind(), SyntaxKind::Sentence | SyntaxKind::Rung) => {
+                    is_frame = it.kind() == SyntaxKind::Rung;
                     let range = place(it.text_range());
                     code.statements.push((line(range.start()), line(range.end())));
                     continue;
@@ -516,6 +524,7 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
             match token.kind() {
                 SyntaxKind::Whitespace | SyntaxKind::Newline => {}
                 SyntaxKind::Comment | SyntaxKind::UnclosedComment => comments.push(range),
+                _ if is_frame => {}
                 _ => {
                     let at = line(range.start());
                     if code.lines.last().is_none_or(|&it| it < at) {

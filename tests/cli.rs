@@ -67,7 +67,7 @@ fn what_is_not_read_is_named() {
     let rung = "RUNG\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
     let folder = folder(&[
         ("press.txt", &format!("LD : PL7-2 - PRL\n{rung}LD : PL7-2 - POST\n{rung}")),
-        ("mixed.txt", "FUNCTION_BLOCK Motor\nEND_FUNCTION_BLOCK\nST : MAST - MAIN\n! %M1 := %M2;\n"),
+        ("mixed.txt", &format!("LD : PL7-2 - POST\n{rung}ST : MAST - MAIN\n! %M1 := %M2;\n")),
         ("plclint.toml", "[target]\ncontroller = 'TSX 17-20'"),
     ]);
     let ran = run(folder.path(), &["check", "--format", "concise"]);

@@ -19,6 +19,7 @@ fn found(text: &str) -> Vec<(&'static str, String)> {
     let mut found: Vec<_> = outcome
         .diagnostics
         .into_iter()
+        .filter(|it| it.suppressed.is_none())
         .map(|it| {
             // Statements are quoted as each language writes them.
             let object = it.finding.message.split('`').nth(1).filter(|it| it.starts_with('%') || it.contains('.'));
@@ -179,4 +180,35 @@ fn comparisons_and_operations() {
         "!    LD   [%MW0>5]\n     [%KW4:=%MW1+1]\n",
         "! IF %MW0>5 THEN %KW4 := %MW1+1; END_IF;\n",
     );
+}
+
+#[test]
+fn the_comment_of_a_rung_covers_it() {
+    let rungs = |comment: &str| {
+        let rung = "OPEN_CONTACT(%I1.0),H_LINK(9),COIL(%Q2.0);\nOPEN_CONTACT(%I1.1),H_LINK(9),COIL(%Q2.0);\nEND_RUNG";
+        found(&format!(
+            "LD : MAST - MAIN\n{comment}\n{rung}\nRUNG\nOPEN_CONTACT(%I1.0),H_LINK(9),COIL(%Q2.1);\nEND_RUNG\n"
+        ))
+    };
+    assert_eq!(rungs("RUNG (*two*)").len(), 1);
+    for comment in
+        ["RUNG (*plclint: allow(W001)*)", "(*plclint: allow(W001)*)\nRUNG (*two*)", "RUNG (*plclint: allow(W001)*) :"]
+    {
+        assert_eq!(rungs(comment), [], "{comment}");
+    }
+}
+
+#[test]
+fn a_block_holds_so_much_text() {
+    let operation = |terms: usize| {
+        let text = format!("RUNG\nH_LINK(7),OPERATE\n%MW0:=%MW1{}\nEND_BLOCK;\nEND_RUNG\n", "+(%MW2)".repeat(terms));
+        let overrides = Overrides { select: Some(vec!["L009".to_owned()]), ..Overrides::default() };
+        let settings = Settings::without_file(Folders::default(), overrides).expect("a rule");
+        let outcome = db::check(vec![Input::from_text("program.txt", &text, Dialect::Pl7)], settings);
+        outcome.diagnostics.into_iter().map(|it| it.finding.message).collect::<Vec<_>>()
+    };
+    // Ten characters, and seven for each term.
+    assert_eq!(operation(583), [""; 0]);
+    let message = "this block holds 4098 characters, and no block holds more than 4096";
+    assert_eq!(operation(584), [message]);
 }

@@ -5,6 +5,7 @@ use crate::analysis::program::{ObjectUses, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Family;
 use crate::model::object::{Area, Class};
+use crate::syntax::Language;
 
 /// `%S0` cold start, `%S1` warm start, `%S13` first cycle; `%SW10` cold start of each task.
 const START_BITS: [u32; 3] = [0, 1, 13];
@@ -12,7 +13,9 @@ const START_WORD: u32 = 10;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    if program.family != Family::Pl7 || !program.complete || program.objects.iter().any(asks) {
+    // Whether the cross-reference of a project lists system bits is not known.
+    let is_project = program.units.iter().any(|it| it.language == Language::Pl7Xref);
+    if program.family != Family::Pl7 || is_project || !program.complete || program.objects.iter().any(asks) {
         return;
     }
     let outputs = program.objects.iter().filter(|it| it.object.class == Class::Output);

@@ -8,7 +8,7 @@ use crate::model::unit::StatementKind;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for statement in &cx.model.statements {
-        // In a list a bit takes a result that was computed before: other writes may lie between.
+        // In a list or a rung a bit takes a result that was computed before: other writes may lie between.
         let (access, value) = match statement.kind {
             StatementKind::Store { access, value } => (access, value),
             StatementKind::Assign { access, value } => (access, value),

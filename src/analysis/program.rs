@@ -215,7 +215,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether two writes of one object can both take effect in one scan.
     pub fn clash(&self, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
-        if chart::in_different_steps(self.units[a.unit as usize], a.it, self.units[b.unit as usize], b.it) {
+        if chart::in_exclusive_actions(self.units[a.unit as usize], a.it, self.units[b.unit as usize], b.it) {
             return false;
         }
         if a.unit != b.unit {

@@ -87,8 +87,8 @@ impl Rule {
                     | Language::Exchange
                     | Language::Pl7Xref
             ),
-            "ld" => language == Language::Pl7Ld,
             // The actions and receptivities of a chart are in any of the languages.
+            "ld" => language == Language::Pl7Ld || language.is_chart(),
             "il" => language == Language::Pl7Il || language.is_chart(),
             "st" => language == Language::Pl7St || language.is_chart(),
             "g7" => language.is_chart(),

@@ -27,7 +27,7 @@ pub struct Comment<'a> {
 pub struct Code {
     /// Lines that hold code, rising.
     pub lines: Vec<u32>,
-    /// First and last line of statements that a comment above them covers as a whole (a PL7 sentence), rising and
+    /// First and last line of statements that a comment above them covers as a whole (a PL7 sentence, a rung), rising and
     /// apart from one another. May be empty.
     pub statements: Vec<(u32, u32)>,
 }
