@@ -147,7 +147,7 @@ fn jumps_and_calls() {
 #[test]
 fn blocks() {
     same(
-        &["C003"],
+        &["C003", "C005"],
         "RUNG\nH_LINK,BLOCK(%TM1),EMPTY_CELL(8);\nEND_RUNG\nRUNG\nH_LINK,BLOCK(%TM1),EMPTY_CELL(8);\nEND_RUNG\n",
         "!    LD   TRUE\n     IN   %TM1\n!    LD   TRUE\n     IN   %TM1\n",
         "! START %TM1;\n! START %TM1;\n",
@@ -171,7 +171,7 @@ fn comparisons_and_operations() {
         "! %Q2.0 := X3.T>=150;\n",
     );
     same(
-        &["O007", "O007", "W004"],
+        &["O007", "O007", "V004", "W004"],
         "RUNG\nCOMPARE %MW0>5 END_BLOCK,H_LINK(5),OPERATE %KW4:=%MW1+1 END_BLOCK;\nEND_RUNG\n",
         "!    LD   [%MW0>5]\n     [%KW4:=%MW1+1]\n",
         "! IF %MW0>5 THEN %KW4 := %MW1+1; END_IF;\n",
