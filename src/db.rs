@@ -160,9 +160,6 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let mut facts = UnitFacts::new(&model);
     facts.has_gaps |=
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
-    if let Some(chart) = &mut facts.chart {
-        chart.has_gaps = !tree.errors().is_empty();
-    }
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
     let target = settings.target_or(family, *named_controller(db, unit.file(db)));

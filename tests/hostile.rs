@@ -54,9 +54,6 @@ const ST: &str = "ST : MAST - SR1\n! (*x*) %L1: IF RE %M0 AND (%MW2[%MW3]:X4 OR 
                   ELSIF %X1.T > 10 THEN FOR %MW1 := 0 TO 5 DO INC %MW2; EXIT; END_FOR; ELSE JUMP %L1; END_IF;\n";
 const IL: &str = "IL : MAST - SR2\n! %L2: LD %I1.0\n AND(N %M1\n OR([%MW0>5]\n )\n )\n MPS\n ST %Q2.0\n MPP\n [%MW1:=%MW2*3]\n JMPC %L2\n";
 
-const LD: &str = "LD : MAST - SR3\nRUNG (*x*) %L3:\nOPEN_CONTACT(%I1.0),SHORT_CIRCUIT,BLOCK(%TM0),H_LINK(6),COIL(%Q2.0);\n\
-                  P_CONTACT(%M1),H_LINK,EMPTY_CELL(9);\nCOMPARE %MW0>5 END_BLOCK,H_LINK(5),OPERATE %MW1:=%MW2[%MW3] END_BLOCK;\n\
-                  EMPTY_LINE;\nEMPTY_CELL(2),V_LINK,BLOCK(%C8),H_LINK(4),JUMP_COIL(%L3);\nEND_RUNG\n";
 const GR7: &str = "GR7 : MAST - P - CHART\nNB_PAGES = 8\nPAGE 0\nINITIAL_STEP 0 AT (C 4,L 3) :\nACTION (N1,ST) : (*PHRASE*) %L1: \
                    IF %X0.T > 5 THEN JUMP %L1; END_IF; (*END_PHRASE*) END_ACTION\nACTION (P0,IL) : ! LD %I1.0 S %M5 END_ACTION\n\
                    END_STEP\nTRANSITION (*go*) (ST) AT (C 4,L 4) : %M0 := %M1 END_TRANSITION\nT_S_OR_LINK FROM (C 4,L 4) TO \
@@ -65,6 +62,9 @@ const GR7: &str = "GR7 : MAST - P - CHART\nNB_PAGES = 8\nPAGE 0\nINITIAL_STEP 0 
                    END_ACTION\nEND_STEP\nEND_PAGE\n";
 const SFC: &str = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); %Q2.1(S); END_STEP\nTRANSITION FROM X0 TO (X1,X2) := %I1.0; \
                    END_TRANSITION\nACTION Fill : %Q2.0 := TRUE; END_ACTION\n";
+const LD: &str = "LD : MAST - SR3\nRUNG (*x*) %L3:\nOPEN_CONTACT(%I1.0),SHORT_CIRCUIT,BLOCK(%TM0),H_LINK(6),COIL(%Q2.0);\n\
+                  P_CONTACT(%M1),H_LINK,EMPTY_CELL(9);\nCOMPARE %MW0>5 END_BLOCK,H_LINK(5),OPERATE %MW1:=%MW2[%MW3] END_BLOCK;\n\
+                  EMPTY_LINE;\nEMPTY_CELL(2),V_LINK,BLOCK(%C8),H_LINK(4),JUMP_COIL(%L3);\nEND_RUNG\n";
 
 fn mutated(base: &'static str) -> impl Strategy<Value = Vec<u8>> {
     let edits = prop::collection::vec((any::<prop::sample::Index>(), 0_usize..6, any::<u8>()), 1..12);
@@ -191,25 +191,24 @@ fn time_is_linear() {
         ("! %M0 := %M1 OR %M2;\n", Dialect::Pl7St),
         ("! IF %M0 THEN %MW1 := %MW2 + 1; END_IF;\n", Dialect::Pl7St),
         ("! LD %M0\nOR %M1\nST %M2\n", Dialect::Pl7Il),
-        ("RUNG\nOPEN_CONTACT(%M0),H_LINK(9),COIL(%M1);\nEND_RUNG\n", Dialect::Pl7Ld),
-        // All in one rung: networks apart, branches, one row.
-        ("OPEN_CONTACT(%M0),H_LINK(9),COIL(%M1);\n", Dialect::Pl7Ld),
-        ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,CLOSED_CONTACT(%M1),H_LINK(7),COIL(%M2);\n", Dialect::Pl7Ld),
-        ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,V_LINK,", Dialect::Pl7Ld),
         ("STEP # AT (C #,L 1) : ACTION (N1,ST) : %L1: %M0 := %M1; JUMP %L1; END_ACTION END_STEP\n", Dialect::Pl7Gr7),
         ("STEP # AT (C #,L 1) : END_STEP TRANSITION (ST) AT (C #,L 2) : %M# END_TRANSITION\n", Dialect::Pl7Gr7),
         ("S_T_AND_LINK FROM (C #,L 1) TO (C 0,L 2)\nSTEP # AT (C #,L 1) : END_STEP\n", Dialect::Pl7Gr7),
         ("SOURCE_CONNECTOR # AT (C #,L 0)\nDEST_CONNECTOR # AT (C #,L 3)\n", Dialect::Pl7Gr7),
         ("STEP X# : A#(N); Fill(N); %M#(N); END_STEP\nACTION A# : %M0 := %M1; END_ACTION\n", Dialect::Sfc),
         ("TRANSITION FROM X# TO (X1,X#) := %M0; END_TRANSITION\n", Dialect::Sfc),
+        ("RUNG\nOPEN_CONTACT(%M0),H_LINK(9),COIL(%M1);\nEND_RUNG\n", Dialect::Pl7Ld),
+        // All in one rung: networks apart, branches, one row.
+        ("OPEN_CONTACT(%M0),H_LINK(9),COIL(%M1);\n", Dialect::Pl7Ld),
+        ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,CLOSED_CONTACT(%M1),H_LINK(7),COIL(%M2);\n", Dialect::Pl7Ld),
+        ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,V_LINK,", Dialect::Pl7Ld),
     ];
     for (shape, dialect) in shapes {
         let time = |count: usize| {
-            // `#` is the number of the repetition.
-            let text: String = (0..count).map(|it| shape.replace('#', &it.to_string())).collect();
-            // What is no rung of its own is read as one.
+            // `#` is the number of the repetition. What is no rung of its own is read as one.
             let is_rung = dialect == Dialect::Pl7Ld && !shape.starts_with("RUNG");
-            let text = if is_rung { format!("RUNG\n{text}") } else { text };
+            let repeated: String = (0..count).map(|it| shape.replace('#', &it.to_string())).collect();
+            let text = format!("{}{repeated}", if is_rung { "RUNG\n" } else { "" });
             let mut best = Duration::MAX;
             for _ in 0..2 {
                 let start = Instant::now();

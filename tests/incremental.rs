@@ -165,11 +165,15 @@ fn an_edit_in_a_page_runs_that_page_alone() {
     let executed = setup.executed();
     assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
     assert_eq!(Setup::count(&executed, "program_findings"), 0, "{executed:?}");
-    // A connector that leads elsewhere is a matter of both pages.
+    // A connector that comes from elsewhere is a matter of the whole chart.
     setup.edit(0, "SOURCE_CONNECTOR 0", "SOURCE_CONNECTOR 5");
     let messages = setup.check();
     let executed = setup.executed();
     assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");
+    assert_eq!(count(&messages, "G005"), 1, "{messages:?}");
+    setup.edit(0, "DEST_CONNECTOR 1", "DEST_CONNECTOR 0");
+    let messages = setup.check();
+    assert_eq!(Setup::count(&setup.executed(), "analysis"), 1);
     assert_eq!(count(&messages, "G005"), 2, "{messages:?}");
 }
 

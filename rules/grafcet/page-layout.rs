@@ -65,10 +65,10 @@ impl Element {
     fn fits(self, line: u32, last: u32) -> bool {
         let is_inner = line > 0 && line < last;
         match self {
-            Self::Step => is_inner && line % 2 == 1,
-            Self::Transition => is_inner && line % 2 == 0,
-            Self::Connector(ConnectorKind::Origin) => line % 2 == 0 && line < last,
-            Self::Connector(ConnectorKind::Destination) => line > 0 && line % 2 == 1,
+            Self::Step => is_inner && !line.is_multiple_of(2),
+            Self::Transition => is_inner && line.is_multiple_of(2),
+            Self::Connector(ConnectorKind::Origin) => line.is_multiple_of(2) && line < last,
+            Self::Connector(ConnectorKind::Destination) => line > 0 && !line.is_multiple_of(2),
         }
     }
 

@@ -1,19 +1,24 @@
 //! T016: a function that PL7 does not have, or a number of arguments that it does not take.
 
 use rowan::TextRange;
+use rustc_hash::FxHashMap;
 
 use crate::lint::{Applicability, Severity, Sink, UnitCx, nearest};
 use crate::syntax::pl7::ast::{CallExpr, CallStmt, Expr};
 use crate::syntax::pl7::functions::{self, Form, Function};
 use crate::syntax::{AstNode as _, SyntaxKind, SyntaxToken};
 
+/// What each unknown name is near to: a text may have it often.
+type Near<'t> = FxHashMap<&'t str, Option<&'static str>>;
+
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    let mut near = Near::default();
     for call in cx.nodes(SyntaxKind::CallExpr).filter_map(CallExpr::cast) {
         let Some(name) = call.name() else { continue };
         match call.function() {
             Some(function) => count(sink, name, function, &call.arguments()),
             // What has a value is a function: an instance of a DFB is a statement.
-            None => unknown(sink, name),
+            None => unknown(sink, &mut near, name),
         }
     }
     for call in cx.nodes(SyntaxKind::CallStmt).filter_map(CallStmt::cast).filter(|it| it.has_parentheses()) {
@@ -23,12 +28,14 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     }
 }
 
-fn unknown(sink: &mut Sink<'_, TextRange>, name: SyntaxToken<'_>) {
+fn unknown<'t>(sink: &mut Sink<'_, TextRange>, near: &mut Near<'t>, name: SyntaxToken<'t>) {
     let text = name.text();
-    let with_value = functions::all().iter().filter(|it| it.form == Form::Call && it.result.is_some());
-    let known = with_value.flat_map(|it| std::iter::once(it.name).chain(it.also.iter().copied()));
+    let near = *near.entry(text).or_insert_with(|| {
+        let with_value = functions::all().iter().filter(|it| it.form == Form::Call && it.result.is_some());
+        nearest(text, with_value.flat_map(|it| std::iter::once(it.name).chain(it.also.iter().copied())))
+    });
     let finding = sink.report(name.text_range(), format!("PL7 has no function `{text}`"));
-    match nearest(text, known) {
+    match near {
         Some(near) => {
             finding.replace(format!("Write `{near}`"), Applicability::Unsafe, name.text_range(), near);
         }

@@ -122,7 +122,7 @@ impl ChartFacts {
             actions,
             defines: chart.steps.iter().any(|it| it.anchor != 0),
             page: chart::place(entity).and_then(|it| it.page),
-            has_gaps: false,
+            has_gaps: chart.has_gaps,
         }
     }
 
@@ -145,18 +145,25 @@ fn section(entity: &Entity) -> Option<(Task, Option<&SmolStr>)> {
     }
 }
 
-/// Whether two uses stand in actions of different steps of one section. Whether such steps are ever active together is a
-/// matter of the chart's evolution.
-pub fn in_different_steps(first: &UnitFacts, a: &Use, second: &UnitFacts, b: &Use) -> bool {
+/// Whether two uses stand in actions of one section that are not known to run in one scan: those of different steps, for
+/// whether such steps are active together is a matter of the chart's evolution, and those of one step at its deactivation
+/// and while it is active.
+pub fn in_exclusive_actions(first: &UnitFacts, a: &Use, second: &UnitFacts, b: &Use) -> bool {
     let (Some(one), Some(other)) = (&first.chart, &second.chart) else { return false };
     let (Some(x), Some(y)) = (one.action_at(a.anchor), other.action_at(b.anchor)) else { return false };
+    if section(&first.entity).is_none() || section(&first.entity) != section(&second.entity) {
+        return false;
+    }
     /// Actions of more steps than this are not compared.
     const MOST: usize = 64;
-    if x.steps.len().max(y.steps.len()) > MOST {
+    if one.graph != other.graph || x.steps.len().max(y.steps.len()) > MOST {
         return true;
     }
-    let known = section(&first.entity).is_some() && section(&first.entity) == section(&second.entity);
-    known && (one.graph != other.graph || !one.names(x).any(|it| other.names(y).any(|also| it == also)))
+    let is_active = |it: &FactAction| matches!(it.kind, Some(ActionKind::Activation | ActionKind::Continuous));
+    let is_end = |it: &FactAction| it.kind == Some(ActionKind::Deactivation);
+    let is_of_one_step = x.steps.len() == 1 && y.steps.len() == 1;
+    is_of_one_step && (is_end(x) && is_active(y) || is_active(x) && is_end(y))
+        || !one.names(x).any(|it| other.names(y).any(|also| it == also))
 }
 
 /// A step of a joined chart.

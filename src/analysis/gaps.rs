@@ -23,7 +23,7 @@ impl Writes {
     /// Whether some run of the unit, in which the condition holds and none of the exits is taken, passes all places by
     /// for certain.
     pub fn leave_out(&self, exprs: &Exprs, given: ExprId, exits: &[[ExprId; 2]]) -> bool {
-        if self.is_open || self.places.contains(&[Exprs::TRUE; 2]) {
+        if self.is_open {
             return false;
         }
         let places: Vec<[ExprId; 2]> = self.places.iter().chain(exits).copied().collect();
@@ -41,19 +41,23 @@ fn is_given(mode: Mode) -> bool {
     mode.assigns() || mode == Mode::Store || matches!(mode, Mode::Drive(_))
 }
 
-/// The writes of each object that is written.
+/// The writes of each object that the unit writes, and may not write in every run.
 pub fn writes(model: &UnitModel) -> FxHashMap<u32, Writes> {
     let mut found: FxHashMap<u32, Writes> = FxHashMap::default();
-    for access in model.accesses.iter().filter(|it| is_given(it.mode)) {
-        let statement = model.statement(access);
-        let when = match statement.map(|it| &it.kind) {
-            Some(StatementKind::Call(call)) => model.calls.get(*call as usize).map_or(Exprs::TRUE, |it| it.when),
-            _ => Exprs::TRUE,
-        };
-        let object = model.object(access.object);
-        if access.path == Exprs::FALSE || !object.is_fixed() {
+    let when = |access: &Access| match model.statement(access).map(|it| &it.kind) {
+        Some(StatementKind::Call(call)) => model.calls.get(*call as usize).map_or(Exprs::TRUE, |it| it.when),
+        _ => Exprs::TRUE,
+    };
+    // Most objects are written in every run.
+    let mut is_sure = vec![false; model.objects.len()];
+    for access in model.accesses.iter().filter(|it| is_given(it.mode) && it.path == Exprs::TRUE) {
+        is_sure[access.object.0 as usize] |= when(access) == Exprs::TRUE;
+    }
+    for access in model.accesses.iter().filter(|it| is_given(it.mode) && it.path != Exprs::FALSE) {
+        if is_sure[access.object.0 as usize] || !model.object(access.object).is_fixed() {
             continue;
         }
+        let (statement, when) = (model.statement(access), when(access));
         let writes = found.entry(access.object.0).or_insert_with(|| Writes { places: Vec::new(), is_open: false });
         writes.is_open |= statement.is_some_and(|it| it.in_loop.is_some()) || writes.places.len() >= MAX_WRITES;
         if !writes.is_open {
@@ -84,6 +88,9 @@ pub fn exits(model: &UnitModel) -> Vec<[ExprId; 2]> {
 
 /// For each statement, the jump that can skip it: the one before it that leads furthest. An index into the jumps.
 pub fn skips(model: &UnitModel) -> Vec<Option<u32>> {
+    if model.jumps.is_empty() {
+        return Vec::new();
+    }
     let mut skips = vec![None; model.statements.len()];
     // Jumps stand in the order of their statements.
     let mut jumps = (0..).zip(&model.jumps).peekable();
@@ -105,4 +112,65 @@ pub fn skips(model: &UnitModel) -> Vec<Option<u32>> {
 pub fn skip(skips: &[Option<u32>], access: &Access) -> Option<u32> {
     let is_reached = access.path != Exprs::TRUE && access.path != Exprs::FALSE;
     skips.get(access.statement as usize).copied().flatten().filter(|_| is_reached)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::Entity;
+    use crate::model::lower;
+    use crate::syntax::{self, Language, Mnemonics};
+
+    fn model(language: Language, text: &str) -> UnitModel {
+        let parse = syntax::parse(language, text);
+        assert_eq!(parse.errors(), [], "{text}");
+        lower::lower(parse.syntax(), text, Entity::Listing, language)
+    }
+
+    /// Objects that some run of the unit leaves as they are.
+    fn left_out(language: Language, text: &str) -> Vec<String> {
+        let model = model(language, text);
+        let (writes, exits) = (writes(&model), exits(&model));
+        let is_left = |at: &u32| writes.get(at).is_some_and(|it| it.leave_out(&model.exprs, Exprs::TRUE, &exits));
+        let objects = (0..).zip(&model.objects).filter(|it| is_left(&it.0));
+        objects.map(|it| it.1.text.to_string()).collect()
+    }
+
+    fn skipped(text: &str) -> Vec<String> {
+        let model = model(Language::Awl(Mnemonics::German), text);
+        let skips = skips(&model);
+        let accesses = model.accesses.iter().filter(|it| it.mode == Mode::Assign);
+        let by = |it: &Access| Some(model.jumps[skip(&skips, it)? as usize].text.to_string());
+        accesses.filter_map(|it| Some(format!("{} by {}", model.object(it.object).text, by(it)?))).collect()
+    }
+
+    #[test]
+    fn what_no_run_leaves_out() {
+        let st = |text| left_out(Language::Pl7St, text);
+        assert_eq!(st("! IF %M0 THEN %M5 := %M1; END_IF;"), ["%M5"]);
+        assert_eq!(st("! IF %M0 THEN %M5 := %M1; ELSIF %M2 THEN %M5 := %M3; ELSE %M5 := %M4; END_IF;"), [""; 0]);
+        assert_eq!(st("! IF %M0 THEN %M5 := %M1; ELSIF %M2 THEN %M5 := %M3; END_IF;"), ["%M5"]);
+        assert_eq!(st("! IF %M0 THEN %M5 := %M1; END_IF; IF NOT %M0 THEN %M5 := %M2; END_IF;"), [""; 0]);
+        // Between the two the bit has another value.
+        assert_eq!(st("! IF %M0 THEN %M5 := %M1; END_IF; %M0 := %M7; IF NOT %M0 THEN %M5 := %M2; END_IF;"), ["%M5"]);
+        assert_eq!(st("! IF %MW0 < 5 THEN %M5 := %M1; END_IF; IF %MW0 >= 3 THEN %M5 := %M2; END_IF;"), [""; 0]);
+        assert_eq!(st("! FOR %MW0 := 0 TO 3 DO %M5 := %M1; END_FOR;"), [""; 0], "loops are not looked into");
+        assert_eq!(st("! IF %M0 THEN RETURN; END_IF; %M5 := %M1;"), [""; 0], "an end is no gap");
+        assert_eq!(st("! IF %M0 THEN RETURN; END_IF; IF %M1 THEN %M5 := %M2; END_IF;"), ["%M5"]);
+    }
+
+    #[test]
+    fn a_loop_by_a_jump_is_no_gap() {
+        let awl = |text| left_out(Language::Awl(Mnemonics::German), text);
+        assert_eq!(awl("A1: U E0.0\n= M0.0\nU E0.1\nSPB A1\nU E0.2\n= A4.0"), [""; 0]);
+        assert_eq!(awl("U E0.1\nSPB A1\nU E0.2\n= A4.0\nA1: U E0.3\n= A4.1"), ["A4.0"]);
+    }
+
+    #[test]
+    fn the_jump_that_leads_furthest_skips() {
+        let text = "U E0.0\nSPB A1\nU E0.1\nSPB A2\nU E1.0\n= M0.0\nA1: U E1.1\n= M0.1\nA2: U E1.2\n= M0.2";
+        assert_eq!(skipped(text), ["M0.0 by A2", "M0.1 by A2"]);
+        assert_eq!(skipped("U E0.0\nSPB A1\nA1: U E1.0\n= M0.0"), [""; 0]);
+        assert_eq!(skipped("A1: U E1.0\n= M0.0\nU E0.0\nSPB A1\nU E1.1\n= M0.1"), [""; 0], "a jump back");
+    }
 }

@@ -148,6 +148,8 @@ pub struct ProgramIndex<'a> {
     pub complete: bool,
     /// Some of the program was not read or not understood.
     pub partial: bool,
+    /// Areas in which an indexed object is written.
+    indexed: FxHashSet<&'a Area>,
     exclusive: FxHashSet<(u32, u32, u32)>,
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
@@ -183,6 +185,8 @@ impl<'a> ProgramIndex<'a> {
             .flat_map(|(unit, facts)| facts.exclusive_uses.iter().map(move |&(a, b)| (unit, a, b)))
             .collect();
         let objects = collect(&units, &order, &calls);
+        let indexed = objects.iter().filter(|it| it.object.indexed && it.is_written());
+        let indexed = indexed.map(|it| &it.object.footprint.area).collect();
         let partial = units.iter().any(|it| it.has_gaps);
         Self {
             family,
@@ -196,6 +200,7 @@ impl<'a> ProgramIndex<'a> {
             order,
             complete,
             partial,
+            indexed,
             exclusive,
             exclusive_uses,
             names,
@@ -210,7 +215,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether two writes of one object can both take effect in one scan.
     pub fn clash(&self, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
-        if chart::in_different_steps(self.units[a.unit as usize], a.it, self.units[b.unit as usize], b.it) {
+        if chart::in_exclusive_actions(self.units[a.unit as usize], a.it, self.units[b.unit as usize], b.it) {
             return false;
         }
         if a.unit != b.unit {
@@ -275,7 +280,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether an indexed object, which may be any of its area, is written in an area.
     pub fn is_written_by_index(&self, area: &Area) -> bool {
-        self.objects.iter().any(|it| it.object.indexed && it.object.footprint.area == *area && it.is_written())
+        self.indexed.contains(area)
     }
 
     /// Whether two calls can both happen in the same scan of the same context.
@@ -685,6 +690,21 @@ mod tests {
         assert!(complete(&["PL7-2 SEQ"]));
         assert!(!complete(&["PL7-2 PRL", "PL7-2 POST"]));
         assert!(!complete(&["PL7-2 FAST"]));
+    }
+
+    #[test]
+    fn tasks_interrupt_one_another() {
+        let units = units(&["MAST - MAIN", "FAST - MAIN", "EVT0", "EVT1", "EVT2", "MAST - SR1"]);
+        let program = ProgramIndex::new(Family::Pl7, units.iter().collect());
+        assert!(program.in_other_tasks(0, 1) && program.in_other_tasks(1, 3) && program.in_other_tasks(2, 3));
+        assert!(!program.in_other_tasks(3, 4), "events of one priority");
+        assert!(!program.in_other_tasks(1, 5), "nothing calls the subroutine");
+        assert_eq!((program.task_names(1), program.task_names(5)), ("FAST".to_owned(), String::new()));
+        let obs: Vec<UnitFacts> = self::units(&["OB1", "OB35", "OB100", "OB82", "OB86"]);
+        let program = ProgramIndex::new(Family::Step7, obs.iter().collect());
+        assert!(program.in_other_tasks(0, 1) && program.in_other_tasks(1, 3));
+        assert!(!program.in_other_tasks(0, 2), "start-up is over when the cycle begins");
+        assert!(!program.in_other_tasks(3, 4), "errors have one priority");
     }
 
     #[test]

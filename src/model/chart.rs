@@ -217,6 +217,8 @@ pub struct Chart {
     pub links: Vec<Link>,
     /// In the order in which their code runs.
     pub actions: Vec<Action>,
+    /// Some of what stands between the elements was not understood.
+    pub has_gaps: bool,
 }
 
 /// A divergence or convergence with its branches, as they are joined.
@@ -246,6 +248,7 @@ impl Chart {
             connectors: Vec::new(),
             links: Vec::new(),
             actions: Vec::new(),
+            has_gaps: false,
         }
     }
 

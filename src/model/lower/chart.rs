@@ -188,7 +188,9 @@ impl<'t> Lowering<'t> {
     }
 
     fn element(&mut self, node: SyntaxNode<'t>, page: Option<u32>) {
-        if let Some(it) = ast::ChartStep::cast(node) {
+        if node.kind() == SyntaxKind::Error {
+            self.chart.has_gaps = true;
+        } else if let Some(it) = ast::ChartStep::cast(node) {
             self.step(it, page);
         } else if let Some(it) = ast::ChartAction::cast(node) {
             self.action(it, None);
@@ -345,7 +347,8 @@ impl<'t> Lowering<'t> {
                 None => Receptivity::Unread,
             };
             if let Receptivity::Value(condition) = receptivity {
-                let range = tree.sentences().last().map_or(tree.range(), Sentence::range);
+                let rung = || tree.rungs().last().map(Rung::range);
+                let range = tree.sentences().last().map(Sentence::range).or_else(rung).unwrap_or(tree.range());
                 pl7.b.statement(StatementKind::Branch { condition }, range);
             }
             if let Some(transition) = self.chart.transitions.get_mut(at) {
@@ -632,6 +635,16 @@ mod tests {
         assert_eq!(writes(&model), ["v%X3: %M5 reset", "^%X3: %M5 set", "%X3: %Q2.0 assigned"]);
         let Receptivity::Value(value) = chart(&model).transitions[0].receptivity else { panic!("a value") };
         assert_eq!(show(&model, value), "(%M7 & (%MW0 > 5))");
+        let rung = |coil: &str| format!("RUNG\nOPEN_CONTACT(%I1.0),CLOSED_CONTACT(%M3),H_LINK(8),{coil};\nEND_RUNG\n");
+        let (action, receptivity) = (rung("COIL(%Q2.2)"), rung("HASH_COIL"));
+        let model = page(&format!(
+            "PAGE 0\nSTEP 3 AT (C 0,L 1) :\nACTION (N1,LD) : {action}END_ACTION\n{STEP}\
+             TRANSITION (LD) AT (C 0,L 2) : {receptivity}END_TRANSITION\nEND_PAGE\n"
+        ));
+        assert_eq!(writes(&model), ["%X3: %Q2.2 assigned"]);
+        let Receptivity::Value(value) = chart(&model).transitions[0].receptivity else { panic!("a value") };
+        assert_eq!(show(&model, value), "(%I1.0 & !%M3)");
+        assert_eq!(model.oddities, []);
         // Tests that no action uses are what a receptivity is.
         assert!(!model.oddities.iter().any(|it| it.kind == OddityKind::TestWithoutAction));
         // The step's bit is looked at by the controller, not by the program.

@@ -426,7 +426,7 @@ impl<'t> Grammar<'_, 't> {
     fn link(&mut self) {
         let m = self.p.start();
         self.p.bump();
-        self.from_to();
+        self.link_ends();
         if self.p.eat(Assign) || self.p.at(LBrack) {
             if self.p.eat(LBrack) {
                 while !matches!(self.p.current(), None | Some(RBrack)) && !self.at_stop() {
@@ -448,7 +448,7 @@ impl<'t> Grammar<'_, 't> {
         self.p.complete(m, ChartLink);
     }
 
-    fn from_to(&mut self) {
+    fn link_ends(&mut self) {
         for (word, name) in [(Word::From, "`FROM`"), (Word::To, "`TO`")] {
             if !self.eat_word(word) {
                 self.expected(name);
@@ -479,7 +479,7 @@ impl<'t> Grammar<'_, 't> {
         }
         let m = self.p.start();
         self.p.bump();
-        self.from_to();
+        self.link_ends();
         self.p.complete(m, Segment);
     }
 
