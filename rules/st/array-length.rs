@@ -13,7 +13,7 @@ use crate::syntax::{AstNode as _, Language, SyntaxKind};
 const SYSTEM_TABLE: std::ops::RangeInclusive<u32> = 50..=53;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St) {
+    if matches!(cx.model.language, Language::Awl(_)) {
         return;
     }
     places(cx, sink);

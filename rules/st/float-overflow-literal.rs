@@ -7,7 +7,7 @@ use crate::model::unit::OddityKind;
 use crate::syntax::Language;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if !matches!(cx.model.language, Language::Pl7Il | Language::Pl7St) {
+    if matches!(cx.model.language, Language::Awl(_)) {
         return;
     }
     for oddity in &cx.model.oddities {

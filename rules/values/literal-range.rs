@@ -11,7 +11,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         // Durations of STEP 7 timers and floating-point numbers of PL7 have rules of their own.
         if let OddityKind::Literal(error) = &oddity.kind
             && !error.is_s5time
-            && !(error.is_real_range && matches!(cx.model.language, Language::Pl7Il | Language::Pl7St))
+            && (!error.is_real_range || matches!(cx.model.language, Language::Awl(_)))
         {
             sink.report(oddity.range, error.message.clone());
         }

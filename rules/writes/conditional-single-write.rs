@@ -6,6 +6,7 @@ use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::{Entity, Part};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
+use crate::syntax::Language;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut found: Vec<(u32, u32, &ObjectUses<'_>, GlobalUse<'_>)> = Vec::new();
@@ -42,6 +43,9 @@ fn lone_assignment<'a>(cx: &ProgramCx<'_>, uses: &ObjectUses<'a>) -> Option<(u32
     let in_chart = matches!(cx.program.entity(first.unit), Entity::Pl7 { part: Part::Chart(_), .. });
     // A value that depends on the output's own is to be kept.
     let computes = uses.with_mode(Mode::writes).any(|it| it.it.constant.is_none() && !it.it.holds);
-    let is_lone = is_plain(first) && writes.all(is_plain) && computes && !in_chart;
+    // In ladder, what a jump leads past shows.
+    let language = cx.program.units[first.unit as usize].language;
+    let is_text = matches!(language, Language::Awl(_) | Language::Pl7Il | Language::Pl7St);
+    let is_lone = is_plain(first) && writes.all(is_plain) && computes && is_text && !in_chart;
     Some((cx.program.missed(first).filter(|_| is_lone)?, *first))
 }

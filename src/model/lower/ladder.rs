@@ -8,7 +8,6 @@ use rowan::TextRange;
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, ToSmolStr as _};
 
-use super::chart;
 use super::pl7::{self, Kind, Pl7};
 use crate::model::UnitModel;
 use crate::model::entity::{Entity, Part};
@@ -24,23 +23,27 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitMod
     let is_transition = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
         || is_bare_receptivity(root);
     let mut pl7 = Pl7::new(root, entity, Language::Pl7Ld);
-    chart::enter_piece(&mut pl7);
+    super::chart::enter_piece(&mut pl7);
     pl7.b.set_back_targets(pl7::back_targets(root, text));
-    let all = ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs);
-    rungs(pl7, all, is_transition).0.b.finish()
+    let code = ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs);
+    let (mut pl7, receptivity) = rungs(pl7, code, is_transition);
+    if let Some(condition) = receptivity {
+        pl7.b.statement(StatementKind::Branch { condition }, root.text_range());
+    }
+    pl7.b.finish()
 }
 
-/// Lowers rungs, and gives the lowering back with the power of the hash coil, the value of a receptivity.
+/// The rungs of a section, an action or a transition. Gives what the `(#)` of a transition takes.
 pub(super) fn rungs<'t>(
     pl7: Pl7,
     rungs: impl IntoIterator<Item = ast::Rung<'t>>,
     is_transition: bool,
 ) -> (Pl7, Option<ExprId>) {
-    let mut lowering = Lowering { pl7, is_transition, value: None };
+    let mut lowering = Lowering { pl7, is_transition, receptivity: None };
     for rung in rungs {
         lowering.rung(rung);
     }
-    (lowering.pl7, lowering.value)
+    (lowering.pl7, lowering.receptivity)
 }
 
 /// One rung with a `(#)` and nothing that says what it belongs to: what documents print of a receptivity.
@@ -56,8 +59,8 @@ fn is_bare_receptivity(root: SyntaxNode<'_>) -> bool {
 struct Lowering {
     pl7: Pl7,
     is_transition: bool,
-    /// Power of the hash coil.
-    value: Option<ExprId>,
+    /// What the hash coils have taken.
+    receptivity: Option<ExprId>,
 }
 
 /// A rung while it is executed. Its connected networks share no wire but the rail.
@@ -123,10 +126,6 @@ impl Lowering {
         }
         for &index in elements {
             self.conduct(grid, index, run);
-        }
-        for it in elements.iter().map(|&index| &grid.placed[index]).filter(|it| it.element == Some(Element::HashCoil)) {
-            let before = self.value.unwrap_or(Exprs::FALSE);
-            self.value = Some(self.pl7.b.exprs().or(before, run.at(it)));
         }
         for &index in elements {
             let it = &grid.placed[index];
@@ -317,7 +316,10 @@ impl Lowering {
         let element = it.element?;
         match element {
             Element::HashCoil => {
-                self.pl7.b.statement(StatementKind::Branch { condition: when }, range);
+                self.receptivity = Some(match self.receptivity {
+                    Some(other) => self.pl7.b.exprs().or(other, when),
+                    None => when,
+                });
                 return None;
             }
             Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil => {}
