@@ -425,7 +425,7 @@ fn is_entry(entity: &Entity) -> bool {
         Entity::Pl7 { part, .. } => !matches!(part, Part::Subroutine(_)),
         Entity::Block { kind, .. } => *kind == BlockKind::Ob,
         Entity::Listing => true,
-        Entity::Container => false,
+        Entity::Dfb { .. } | Entity::Container => false,
     }
 }
 
@@ -442,7 +442,7 @@ fn own_context(entity: &Entity) -> Option<Context> {
             other => Context::Interrupt(*other),
         }),
         Entity::Listing => Some(Context::Cyclic),
-        Entity::Block { .. } | Entity::Container => None,
+        Entity::Block { .. } | Entity::Dfb { .. } | Entity::Container => None,
     }
 }
 
