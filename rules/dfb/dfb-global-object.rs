@@ -18,7 +18,9 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         }
     }
     for (object, places) in found {
-        let (Some(object), [first, others @ ..]) = (cx.model.objects.get(object as usize), &places[..]) else { continue };
+        let (Some(object), [first, others @ ..]) = (cx.model.objects.get(object as usize), &places[..]) else {
+            continue;
+        };
         let message = if object.class == Class::Symbol {
             format!("`{}` is no parameter or variable of the DFB", object.text)
         } else {

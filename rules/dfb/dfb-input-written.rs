@@ -21,9 +21,12 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         };
         let mut writes = writes.iter().filter(of_item);
         let Some(first) = writes.next() else { continue };
-        sink.report(cx.model.place(first.anchor), format!("`{}` is an input of the DFB, which its code cannot write", item.name))
-            .label(format!("{} here", first.mode.verb()))
-            .related(cx.model.place(item.anchor), "declared here")
-            .related_all(writes.map(|it| (cx.model.place(it.anchor), format!("also {} here", it.mode.verb()))));
+        sink.report(
+            cx.model.place(first.anchor),
+            format!("`{}` is an input of the DFB, which its code cannot write", item.name),
+        )
+        .label(format!("{} here", first.mode.verb()))
+        .related(cx.model.place(item.anchor), "declared here")
+        .related_all(writes.map(|it| (cx.model.place(it.anchor), format!("also {} here", it.mode.verb()))));
     }
 }

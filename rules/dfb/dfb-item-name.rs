@@ -18,10 +18,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 fn flaw(name: &str) -> Option<String> {
     let length = name.chars().count();
     if let Some(wrong) = name.chars().find(|it| !it.is_ascii_alphanumeric() && *it != '_') {
-        Some(format!(
-            "holds `{}`: letters without accent, digits and underscores are allowed",
-            wrong.escape_debug()
-        ))
+        Some(format!("holds `{}`: letters without accent, digits and underscores are allowed", wrong.escape_debug()))
     } else if !name.starts_with(|it: char| it.is_ascii_alphabetic()) {
         Some("does not begin with a letter".to_owned())
     } else if length > DFB_ITEM_NAME_LENGTH.value as usize {

@@ -59,7 +59,9 @@ impl Grammar<'_, '_> {
     }
 
     fn at_section(&self) -> bool {
-        self.p.at(Ident) && SECTIONS.iter().any(|it| self.p.at_text(it)) && !matches!(self.p.nth(1), Some(Assign | Colon))
+        self.p.at(Ident)
+            && SECTIONS.iter().any(|it| self.p.at_text(it))
+            && !matches!(self.p.nth(1), Some(Assign | Colon))
     }
 
     /// section = ('VAR_INPUT' | ... | 'VAR') declaration* 'END_VAR' [';']
@@ -150,6 +152,11 @@ impl Grammar<'_, '_> {
             && self.p.at(Ident)
             && self.p.nth(1) == Some(Colon)
             && self.p.nth(2) != Some(Number);
-        self.p.at_end() || self.p.at(Semicolon) || self.p.at_text("END_VAR") || self.at_section() || self.at_stop() || is_next
+        self.p.at_end()
+            || self.p.at(Semicolon)
+            || self.p.at_text("END_VAR")
+            || self.at_section()
+            || self.at_stop()
+            || is_next
     }
 }

@@ -956,7 +956,9 @@ fn dfb_types() {
          Mots) : (TypeRef AR_D [ 4 ]) ;) (VarDecl (VarName 2 x - é) : (TypeRef WORD) ;) END_VAR) (Sentence ! (AssignStmt \
          (NameRef Raz) := (BinExpr (NameRef Tab (Index [ (Literal 2) ])) > (Literal 3)) ;)) END_FUNCTION_BLOCK"
     );
-    legal(parse_ld("FUNCTION_BLOCK A\nVAR_INPUT b : EBOOL; END_VAR\nRUNG\nOPEN_CONTACT(b),COIL(b);\nEND_RUNG\nEND_FUNCTION_BLOCK"));
+    legal(parse_ld(
+        "FUNCTION_BLOCK A\nVAR_INPUT b : EBOOL; END_VAR\nRUNG\nOPEN_CONTACT(b),COIL(b);\nEND_RUNG\nEND_FUNCTION_BLOCK",
+    ));
     legal(parse_il("FUNCTION_BLOCK A\n! LD b\n ST c\nEND_FUNCTION_BLOCK"));
 }
 
@@ -967,7 +969,10 @@ fn dfb_types_that_are_cut() {
     };
     check("FUNCTION_BLOCK A\n! b := 1;\n", &[";: expected `END_FUNCTION_BLOCK` after this"]);
     check("FUNCTION_BLOCK A\nVAR\nb : BOOL;\nEND_FUNCTION_BLOCK", &[";: expected `END_VAR` after this"]);
-    check("FUNCTION_BLOCK A\nVAR\nb : BOOL\nc : BOOL;\nEND_VAR\nEND_FUNCTION_BLOCK", &["BOOL: expected `;` after this"]);
+    check(
+        "FUNCTION_BLOCK A\nVAR\nb : BOOL\nc : BOOL;\nEND_VAR\nEND_FUNCTION_BLOCK",
+        &["BOOL: expected `;` after this"],
+    );
     check("FUNCTION_BLOCK\nEND_FUNCTION_BLOCK", &["FUNCTION_BLOCK: expected the name of the DFB type after this"]);
     check("FUNCTION_BLOCK A\nEND_FUNCTION_BLOCK\nc := 1;", &["c: nothing follows `END_FUNCTION_BLOCK`"]);
     for part in ["VAR ", "a:", "END_VAR ", "FUNCTION_BLOCK ", "a,", "END_FUNCTION_BLOCK "] {
