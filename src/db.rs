@@ -165,7 +165,9 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let target = settings.target_or(family, *named_controller(db, unit.file(db)));
     let cx = UnitCx::new(&model, &tree, text, settings, &target);
     let findings = run_rules(settings, |rule, findings| match rule.check {
-        Check::Unit(check) if rule.is_for(language) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
+        Check::Unit(check) if rule.is_for_unit(language, unit.entity(db)) => {
+            crate::lint::run(rule, findings, |sink| check(&cx, sink));
+        }
         Check::Unit(_) | Check::Program(_) | Check::File(_) => {}
     });
     let not_understood = if unit.unsupported(db).is_some() { text.len() } else { not_understood(language, &tree) };

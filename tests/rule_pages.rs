@@ -62,7 +62,7 @@ fn examples(rule: &Rule) -> Vec<Example> {
                 "il" => Dialect::Pl7Il,
                 "st" => Dialect::Pl7St,
                 "ld" => Dialect::Pl7Ld,
-                "pl7" => Dialect::Pl7,
+                "pl7" | "dfb" => Dialect::Pl7,
                 "gr7" => Dialect::Pl7Gr7,
                 "sfc" => Dialect::Sfc,
                 other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
@@ -133,6 +133,7 @@ fn every_dialect_has_its_examples() {
                 "st" => &[Dialect::Pl7St],
                 "ld" => &[Dialect::Pl7Ld],
                 "g7" => &[Dialect::Pl7Gr7],
+                "dfb" => &[Dialect::Pl7],
                 // Read in a later version.
                 "s5" | "pl72" => &[],
                 other => panic!("{}: dialect `{other}`", rule.name),

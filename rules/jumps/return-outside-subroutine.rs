@@ -3,10 +3,12 @@
 use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
+use crate::model::entity::Entity;
 use crate::model::unit::{Leave, StatementKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if cx.model.entity.subroutine().is_some() {
+    // The code of a DFB has a caller, and `RETURN` is not among what it may not hold (PL7:5480-5487).
+    if cx.model.entity.subroutine().is_some() || matches!(cx.model.entity, Entity::Dfb { .. }) {
         return;
     }
     for statement in &cx.model.statements {

@@ -11,6 +11,7 @@ use super::chart::ChartFacts;
 use super::{conditions, gaps};
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
+use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
@@ -90,6 +91,8 @@ pub struct FactCall {
     pub full: bool,
     /// Number of parameters given.
     pub arguments: u32,
+    /// Of an instance of a DFB: positions of the parameters given, from 0, in order.
+    pub given: Vec<u32>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -108,6 +111,8 @@ pub struct FactSymbol {
     pub name: SmolStr,
     /// `None` for an instance of a DFB.
     pub object: Option<Object>,
+    /// As written, blanks removed: of an instance the DFB type.
+    pub ty: SmolStr,
     /// Place of the name.
     pub anchor: u32,
 }
@@ -140,6 +145,8 @@ pub struct UnitFacts {
     pub has_gaps: bool,
     /// What the unit holds of a chart.
     pub chart: Option<Box<ChartFacts>>,
+    /// The parameters and variables of a DFB type.
+    pub interface: Option<Box<Interface>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -247,7 +254,12 @@ impl UnitFacts {
             symbols: model
                 .symbols
                 .iter()
-                .map(|it| FactSymbol { name: it.name.clone(), object: it.object.clone(), anchor: it.anchor })
+                .map(|it| FactSymbol {
+                    name: it.name.clone(),
+                    object: it.object.clone(),
+                    ty: it.ty.clone(),
+                    anchor: it.anchor,
+                })
                 .collect(),
             instructions: model.instructions,
             computes: model.computes,
@@ -255,6 +267,7 @@ impl UnitFacts {
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
             chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity))),
+            interface: model.interface.clone(),
         }
     }
 }
@@ -444,6 +457,10 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
                 .map(|it| it.1),
             full: call.full,
             arguments: u32::try_from(call.arguments.len()).unwrap_or(u32::MAX),
+            given: match call.callee {
+                Callee::Instance(_) => call.arguments.iter().map(|it| it.position).collect(),
+                _ => Vec::new(),
+            },
         })
         .collect()
 }
@@ -453,7 +470,7 @@ fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
         .calls
         .iter()
         .enumerate()
-        .filter(|(_, call)| matches!(call.callee, Callee::Subroutine(_) | Callee::Block(_)))
+        .filter(|(_, call)| matches!(call.callee, Callee::Subroutine(_) | Callee::Block(_) | Callee::Instance(_)))
         .filter_map(|(at, call)| {
             let path = model.statements.get(call.statement as usize)?.path;
             (path != Exprs::TRUE || call.when != Exprs::TRUE).then_some((u32::try_from(at).ok()?, path, call))

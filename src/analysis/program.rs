@@ -4,12 +4,15 @@ use std::cell::OnceCell;
 
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
 
 use super::Site;
 use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
+use crate::model::dfb::Interface;
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
+use crate::model::symbols::key;
 use crate::model::unit::{Callee, Mode, Section};
 use crate::syntax::Language;
 
@@ -371,6 +374,12 @@ impl<'a> ProgramIndex<'a> {
         self.names.get(&UnitName::Block(name.clone())).copied()
     }
 
+    /// The type of an instance of a DFB, if the program holds both: its unit and its interface.
+    pub fn dfb_of(&self, instance: &str) -> Option<(u32, &'a Interface)> {
+        let &unit = self.names.get(&UnitName::Instance(key(instance)))?;
+        Some((unit, self.units.get(unit as usize)?.interface.as_deref()?))
+    }
+
     /// Pairs of distinct objects that share memory, by index, the earlier address first.
     pub fn overlaps(&self) -> Vec<(u32, u32)> {
         /// One object is compared with at most this many that start inside it.
@@ -402,6 +411,8 @@ fn as_index(at: usize) -> u32 {
 enum UnitName {
     Subroutine(u32),
     Block(BlockName),
+    /// An instance of a DFB, by the key of its name: the unit is its type.
+    Instance(SmolStr),
 }
 
 fn unit_names(units: &[&UnitFacts]) -> FxHashMap<UnitName, u32> {
@@ -414,6 +425,19 @@ fn unit_names(units: &[&UnitFacts]) -> FxHashMap<UnitName, u32> {
         };
         names.entry(name).or_insert(as_index(at));
     }
+    let types: FxHashMap<SmolStr, u32> = (0..)
+        .zip(units)
+        .filter_map(|(at, facts)| match &facts.entity {
+            Entity::Dfb { name } => Some((key(name), at)),
+            _ => None,
+        })
+        .collect();
+    let symbols = units.iter().flat_map(|it| &it.symbols).filter(|it| it.object.is_none());
+    for symbol in symbols {
+        if let Some(&at) = types.get(&key(&symbol.ty)) {
+            names.entry(UnitName::Instance(key(&symbol.name))).or_insert(at);
+        }
+    }
     names
 }
 
@@ -421,7 +445,8 @@ fn target(callee: &Callee) -> Option<UnitName> {
     match callee {
         Callee::Subroutine(number) => Some(UnitName::Subroutine(*number)),
         Callee::Block(name) => Some(UnitName::Block(name.clone())),
-        Callee::LocalInstance(_) | Callee::Function(_) | Callee::Instance(_) | Callee::Unknown => None,
+        Callee::Instance(name) => Some(UnitName::Instance(key(name))),
+        Callee::LocalInstance(_) | Callee::Function(_) | Callee::Unknown => None,
     }
 }
 
@@ -430,7 +455,7 @@ fn is_entry(entity: &Entity) -> bool {
         Entity::Pl7 { part, .. } => !matches!(part, Part::Subroutine(_)),
         Entity::Block { kind, .. } => *kind == BlockKind::Ob,
         Entity::Listing => true,
-        Entity::Container => false,
+        Entity::Dfb { .. } | Entity::Container => false,
     }
 }
 
@@ -447,7 +472,7 @@ fn own_context(entity: &Entity) -> Option<Context> {
             other => Context::Interrupt(*other),
         }),
         Entity::Listing => Some(Context::Cyclic),
-        Entity::Block { .. } | Entity::Container => None,
+        Entity::Block { .. } | Entity::Dfb { .. } | Entity::Container => None,
     }
 }
 

@@ -5,7 +5,7 @@ use rowan::TextRange;
 use super::context::{FileCx, ProgramCx, UnitCx};
 use super::finding::{Finding, Severity, Sink};
 use crate::analysis::Site;
-use crate::model::entity::Family;
+use crate::model::entity::{Entity, Family};
 use crate::syntax::Language;
 
 /// What a rule looks at, which decides when it runs again after an edit.
@@ -97,10 +97,15 @@ impl Rule {
         })
     }
 
+    /// As [`Self::is_for`], of a unit that is what `entity` says.
+    pub fn is_for_unit(&self, language: Language, entity: &Entity) -> bool {
+        self.is_for(language) || matches!(entity, Entity::Dfb { .. }) && self.dialects.contains(&"dfb")
+    }
+
     /// Whether programs of a family are among what the rule looks at.
     pub fn is_for_family(&self, family: Family) -> bool {
         self.dialects.iter().any(|dialect| match family {
-            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld" | "g7"),
+            Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld" | "g7" | "dfb"),
             Family::Pl72 => matches!(*dialect, "all" | "pl72"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })

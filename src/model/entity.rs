@@ -117,6 +117,8 @@ pub enum Entity {
     Pl7 { task: Task, section: Option<SmolStr>, part: Part },
     /// A Siemens block. `declared_kind` is the keyword of its header, which a symbolic name does not tell.
     Block { kind: BlockKind, name: BlockName },
+    /// A DFB type of a PL7 application, by its name as written.
+    Dfb { name: SmolStr },
     /// Siemens code without a block header.
     Listing,
     /// Text around programs: headers of an exchange file, text before the first block.
@@ -174,6 +176,7 @@ impl fmt::Display for Entity {
             }
             Self::Block { kind, name: name @ BlockName::Symbol(_) } => write!(f, "{} {name}", kind.as_str()),
             Self::Block { name, .. } => write!(f, "{name}"),
+            Self::Dfb { name } => write!(f, "FUNCTION_BLOCK {name}"),
             Self::Listing => f.write_str("listing"),
             Self::Container => f.write_str("file"),
         }

@@ -3,6 +3,7 @@
 //! **Invariant:** this module knows no rule.
 
 pub mod chart;
+pub mod dfb;
 pub mod entity;
 pub mod expr;
 pub mod ladder;

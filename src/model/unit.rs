@@ -10,11 +10,12 @@ use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use super::chart::{Chart, CodeLanguage};
+use super::dfb::Interface;
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
 use super::literal::{LiteralError, Value};
-use super::object::{AddressError, Object};
+use super::object::{AddressError, Object, Type};
 use super::symbols::{Remark, Symbol};
 use crate::syntax::Language;
 
@@ -275,6 +276,10 @@ pub struct Argument {
     pub name: Option<SmolStr>,
     pub object: Option<ObjectId>,
     pub range: TextRange,
+    /// Place among the parameters, from 0: positions may be left open.
+    pub position: u32,
+    /// What kind of value is given, for an instance of a DFB.
+    pub ty: Option<Type>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -518,6 +523,8 @@ pub struct UnitModel {
     pub mixes_floats: bool,
     /// What the unit holds of a chart.
     pub chart: Option<Box<Chart>>,
+    /// The parameters and variables of a DFB type.
+    pub interface: Option<Box<Interface>>,
 }
 
 impl UnitModel {

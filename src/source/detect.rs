@@ -336,6 +336,9 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
     if extension == Extension::Form(unsupported::VARIABLES, Storage::Text) && tally.variables > 0 {
         return Detected::Exchange;
     }
+    if extension == Extension::Form(unsupported::DFB, Storage::Text) && tally.block_headers > 0 {
+        return Detected::Pasted(tally.pl7_text(extension));
+    }
     if !matches!(extension, Extension::Form(..))
         && let Some(detected) = tally.prove()
     {
@@ -1002,7 +1005,8 @@ mod tests {
         check("a.il", "LD Depart\nANDN Arret\nST Moteur\n", IL);
         check("a.st", "Moteur := Depart AND NOT Arret;\n", ST);
         check("a.st", "VAR\n x : INT;\nEND_VAR\nx := x + 1;\n", unsupported(unsupported::IEC));
-        check("a.dfb", "FUNCTION_BLOCK Cpt\nEND_FUNCTION_BLOCK", unsupported(unsupported::DFB));
+        check("a.dfb", "FUNCTION_BLOCK Cpt\nEND_FUNCTION_BLOCK", ST);
+        check("a.dfb", "Dear reader", unsupported(unsupported::DFB));
         check("a.scy", "Pump AT %M0 : EBOOL (*comment*);", Detected::Exchange);
         check("a.scy", "Cpt_vis : Cpt_pieces;", Detected::Exchange);
         check("a.scy", "Dear reader", unsupported(unsupported::VARIABLES));

@@ -140,7 +140,7 @@ fn heading_of(part: &str, detected: Detected) -> bool {
     let mut codes = Lines::new(part, comments).map(|it| it.code).filter(|it| !it.is_empty() && !it.starts_with("//"));
     codes.next().is_some_and(|it| match detected {
         Detected::Step7 => block_header(it).is_some(),
-        _ => pl7_heading(it).is_some(),
+        _ => pl7_heading(it).is_some() || dfb_header(it).is_some(),
     })
 }
 
@@ -213,7 +213,8 @@ impl Units<'_> {
                 Some(language) => (language, draft.unsupported),
                 None => {
                     let text = self.text.get(draft.start..end).unwrap_or_default();
-                    (pl7_language(pl7_text(text)), draft.unsupported)
+                    let is_dfb = matches!(draft.entity, Entity::Dfb { .. });
+                    (if is_dfb { dfb_language(text) } else { pl7_language(pl7_text(text)) }, draft.unsupported)
                 }
             };
             UnitSpan {
@@ -259,6 +260,19 @@ fn pl7_language(text: Pl7Text) -> Language {
         Pl7Text::Ld => Language::Pl7Ld,
         Pl7Text::Gr7 => Language::Pl7Gr7,
         Pl7Text::Sfc => Language::Sfc,
+    }
+}
+
+/// The language of the code of a DFB type that does not say it.
+fn dfb_language(text: &str) -> Language {
+    let code = text.lines().skip_while(|it| !word(it.trim_start()).0.eq_ignore_ascii_case("END_VAR"));
+    if code.clone().any(|it| word(it.trim_start()).0.eq_ignore_ascii_case("RUNG")) {
+        return Language::Pl7Ld;
+    }
+    let is_code = |it: &&str| !word(it.trim_start()).0.to_ascii_uppercase().contains("VAR");
+    match pl7_text(&code.filter(is_code).collect::<Vec<_>>().join("\n")) {
+        Pl7Text::Il => Language::Pl7Il,
+        _ => Language::Pl7St,
     }
 }
 
@@ -361,11 +375,19 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
         Draft::new(hint.entity.clone().unwrap_or(main), Some(pl7_language(default)))
     };
     let mut pages = 0;
+    // Within a DFB type; behind one, where code that no heading names is a unit of its own.
+    let (mut in_dfb, mut after_dfb) = (false, false);
     for line in Lines::new(units.text, Comments::Pl7) {
         if line.code.is_empty() {
             continue;
         }
-        if let Some(heading) = pl7_heading(line.code) {
+        let was_dfb = in_dfb;
+        in_dfb &= !ends_program(line.code);
+        if let Some(name) = dfb_header(line.code) {
+            units.push(units.code_end, Draft::new(Entity::Dfb { name: name.into() }, None));
+            (in_dfb, after_dfb) = (true, false);
+        } else if let Some(heading) = pl7_heading(line.code) {
+            (in_dfb, after_dfb) = (false, false);
             let (language, unsupported) = match heading.language {
                 _ if heading.pl7_2 => (Language::Exchange, Some(unsupported::PL7_2)),
                 HeadingLanguage::Il => (Language::Pl7Il, None),
@@ -375,8 +397,11 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
             };
             units.push(units.code_end, Draft { unsupported, ..Draft::new(heading.entity, Some(language)) });
             pages = 0;
-        } else if units.drafts.is_empty() {
-            units.push(0, unnamed());
+        } else if units.drafts.is_empty() || after_dfb {
+            units.push(units.code_end, unnamed());
+            after_dfb = false;
+        } else if was_dfb && !in_dfb {
+            after_dfb = true;
         }
         if units.in_chart()
             && let Some(page) = page_line(line.code)
@@ -520,6 +545,16 @@ fn project_entity(address: &str) -> Entity {
     Entity::Pl7 { task, section: Some(rest.into()), part: Part::Main }
 }
 
+/// `FUNCTION_BLOCK Cpt_pieces`: the name.
+fn dfb_header(code: &str) -> Option<&str> {
+    if !code.starts_with(['F', 'f']) {
+        return None;
+    }
+    let (keyword, rest) = word(code);
+    let name = word(rest.trim_start()).0;
+    (keyword.eq_ignore_ascii_case("FUNCTION_BLOCK") && !name.is_empty()).then_some(name)
+}
+
 fn ends_program(code: &str) -> bool {
     ["END_PROGRAM", "END_FUNCTION_BLOCK"].iter().any(|end| strip_prefix_ignore_case(code, end).is_some())
 }
@@ -585,8 +620,14 @@ impl<'t> SourceUnit<'t> {
     fn program(&self, line: &str) -> Draft {
         if let Some(rest) = strip_prefix_ignore_case(line, "FUNCTION_BLOCK") {
             let name = Some(word(rest.trim_start()).0).filter(|name| !name.is_empty()).or(self.name);
-            let label = Some(format_smolstr!("FUNCTION_BLOCK {}", name.unwrap_or_default()));
-            return Draft { label, unsupported: Some(unsupported::DFB), ..Draft::container() };
+            let entity = Entity::Dfb { name: name.unwrap_or_default().into() };
+            let language = match self.language.unwrap_or_default().to_ascii_uppercase().as_str() {
+                "IL" => Some(Language::Pl7Il),
+                "ST" => Some(Language::Pl7St),
+                "LD" => Some(Language::Pl7Ld),
+                _ => None,
+            };
+            return Draft::new(entity, language);
         }
         let repeated = strip_prefix_ignore_case(line, "PROGRAM").unwrap_or_default();
         let address = self.address.into_iter().chain([repeated]).find_map(pl7_address);
@@ -874,7 +915,7 @@ mod tests {
 
     #[test]
     fn programs_of_exchange_files() {
-        use super::unsupported::{DFB, OTHER_LANGUAGE};
+        use super::unsupported::OTHER_LANGUAGE;
         for (keys, program, expected, language, form) in [
             ("ADDRESS = MAST SR1", "PROGRAM", "MAST - SR1", ST, None),
             ("NAME = 'FAST_MAIN' LANGUAGE = IL ADDRESS = FAST MAIN", "PROGRAM", "FAST - MAIN", IL, None),
@@ -894,7 +935,10 @@ mod tests {
             ("LANGUAGE = LD ADDRESS = MAST MAIN NAME = 'a=b'", "PROGRAM", "MAST - a=b", LD, None),
             ("NAME = 'x'", "PROGRAM\nRUNG\nH_LINK(10),COIL(%M0);\nEND_RUNG", "MAST - x", LD, None),
             ("NAME = 'x'", "PROGRAM\n LD %M0\n ST %M1", "MAST - x", IL, None),
-            ("NAME = 'x'", "FUNCTION_BLOCK Cpt", "FUNCTION_BLOCK Cpt", KEYS, Some(DFB)),
+            ("NAME = 'x'", "FUNCTION_BLOCK Cpt", "FUNCTION_BLOCK Cpt", ST, None),
+            ("NAME = 'x' LANGUAGE = LD", "FUNCTION_BLOCK", "FUNCTION_BLOCK x", LD, None),
+            ("", "FUNCTION_BLOCK A\nVAR\nb : BOOL := 0;\nEND_VAR\nRUNG\nEND_RUNG", "FUNCTION_BLOCK A", LD, None),
+            ("", "FUNCTION_BLOCK A\nVAR\nb : BOOL := 0;\nEND_VAR\nLD b\nST c", "FUNCTION_BLOCK A", IL, None),
             ("PROGRAM = x ADDRESS = nonsense", "PROGRAM", "MAST - MAIN", ST, None),
         ] {
             let text = format!("[SOURCE_UNIT] {keys}\n{program}\n");

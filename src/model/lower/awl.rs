@@ -910,7 +910,8 @@ impl Machine {
                     None
                 }
             };
-            arguments.push(Argument { name, object, range });
+            let position = index(arguments.len());
+            arguments.push(Argument { name, object, range, position, ty: None });
         }
         let anchor = self.b.anchor(callee_node.range());
         if let Some(node) = &instance_node {

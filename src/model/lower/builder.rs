@@ -98,6 +98,7 @@ impl Builder {
             has_gaps: false,
             mixes_floats: false,
             chart: None,
+            interface: None,
         };
         Self {
             model,

@@ -284,7 +284,8 @@ impl Lowering {
             instance: None,
             instance_range: None,
             arguments: Vec::new(),
-            full: true,
+            // What its pins are given is not read.
+            full: false,
         };
         self.pl7.b.call(call, range);
         self.pl7.b.wipe();

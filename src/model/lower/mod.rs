@@ -3,6 +3,7 @@
 mod awl;
 mod builder;
 mod chart;
+mod dfb;
 mod exchange;
 mod il;
 mod ladder;

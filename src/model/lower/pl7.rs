@@ -4,7 +4,8 @@ use crate::syntax::AstNode as _;
 use rowan::TextRange;
 use smol_str::SmolStr;
 
-use super::builder::Builder;
+use super::builder::{Builder, index};
+use super::dfb;
 use crate::model::entity::Entity;
 use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
@@ -40,6 +41,8 @@ impl Kind {
 
 pub(super) struct Pl7 {
     pub(super) b: Builder,
+    /// The interface of a DFB type, by its names; empty elsewhere.
+    pub(super) items: dfb::Items,
 }
 
 /// The heading line, else the first sentence's first token.
@@ -58,7 +61,10 @@ fn heading(node: SyntaxNode<'_>) -> TextRange {
 
 impl Pl7 {
     pub(super) fn new(root: SyntaxNode<'_>, entity: Entity, language: Language) -> Self {
-        Self { b: Builder::new(entity, language, heading(root)) }
+        let b = Builder::new(entity, language, heading(root));
+        let mut pl7 = Self { b, items: dfb::Items::default() };
+        dfb::enter(&mut pl7, root);
+        pl7
     }
 
     pub(super) fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
@@ -132,13 +138,16 @@ impl Pl7 {
         if let Some(index) = indexed {
             self.index(index);
         }
-        if let Some(suggestion) = object::pl7::suggest(&path) {
+        let own = dfb::object(&self.items, &path, indexed.is_some());
+        if own.is_none()
+            && let Some(suggestion) = object::pl7::suggest(&path)
+        {
             let message = format!("`{path}` lacks its percent sign");
             let error =
                 object::AddressError { kind: AddressErrorKind::Malformed, message, suggestion: Some(suggestion) };
             return (self.address_error(error, range, &path), range);
         }
-        let mut object = Object::symbol(&path);
+        let mut object = own.unwrap_or_else(|| Object::symbol(&path));
         if indexed.is_some() {
             object.indexed = true;
             object.text = it.syntax().text().into_owned().split_whitespace().collect::<String>().into();
@@ -454,8 +463,14 @@ impl Pl7 {
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
             let at = argument.syntax().text_range();
-            let (object, ..) = self.argument(&argument, function, position);
-            arguments.push(Argument { name: None, object, range: at });
+            let (object, _, kind) = self.argument(&argument, function, position);
+            let ty = match (object, kind) {
+                (Some(object), _) => Some(self.ty(object)),
+                (None, Kind::Bit) => Some(Type::Bool),
+                (None, Kind::Float) => Some(Type::Float),
+                (None, Kind::Number | Kind::Unknown) => None,
+            };
+            arguments.push(Argument { name: None, object, range: at, position: index(position), ty });
         }
         let callee_kind = match function {
             Some(_) => Callee::Function(name),

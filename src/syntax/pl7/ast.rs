@@ -54,6 +54,9 @@ nodes! {
     Rung,
     RungRow,
     Cell,
+    /// `VAR_INPUT ... END_VAR` of a DFB type.
+    VarSection,
+    VarDecl,
 }
 
 choices! {

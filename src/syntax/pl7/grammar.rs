@@ -7,6 +7,7 @@ use SyntaxKind::{
 use rowan::TextRange;
 
 use super::chart;
+use super::dfb;
 use super::functions;
 use super::lexer::lex;
 use super::word::{self, Keyword};
@@ -73,7 +74,14 @@ fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
         .map(|(n, kind)| if kind == Ident { Keyword::of(parser.nth_text(n)) } else { None })
         .map(|word| word.filter(|it| !it.is_of_ladder() || is_chart || dialect == Dialect::Ld))
         .collect();
-    let stops = if is_chart { chart::stops(&parser) } else { Vec::new() };
+    let is_dfb = !is_chart && dfb::is_type(&parser);
+    let stops = if is_chart {
+        chart::stops(&parser)
+    } else if is_dfb {
+        dfb::stops(&parser)
+    } else {
+        Vec::new()
+    };
     let state = State {
         words: &words,
         dialect,
@@ -90,6 +98,8 @@ fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
     let mut grammar = Grammar { p: &mut parser, state };
     if is_chart {
         grammar.chart();
+    } else if is_dfb {
+        grammar.dfb();
     } else {
         grammar.unit();
     }
@@ -97,12 +107,29 @@ fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
 }
 
 impl<'t> Grammar<'_, 't> {
-    /// unit = (heading | program line | sentence | rung)*
+    /// dfb = head code 'END_FUNCTION_BLOCK'
+    fn dfb(&mut self) {
+        self.dfb_head();
+        self.body();
+        if self.at_stop() {
+            self.dfb_end();
+        } else {
+            self.state.muted = false;
+            self.expected("`END_FUNCTION_BLOCK`");
+        }
+    }
+
+    /// unit = [heading] code
     fn unit(&mut self) {
         if self.at_task_line() {
             self.heading();
         }
-        while !self.p.at_end() {
+        self.body();
+    }
+
+    /// code = (heading | program line | sentence | rung)*
+    fn body(&mut self) {
+        while !(self.p.at_end() || self.at_stop()) {
             self.state.muted = false;
             if self.at_heading() {
                 self.heading();

@@ -29,7 +29,12 @@ impl Grammar<'_, '_> {
         self.expected("`RUNG`");
         let m = self.p.start();
         self.p.bump();
-        while !(self.p.at_end() || self.at_keyword(Keyword::Rung) || self.at_heading() || self.at_program_line()) {
+        while !(self.p.at_end()
+            || self.at_stop()
+            || self.at_keyword(Keyword::Rung)
+            || self.at_heading()
+            || self.at_program_line())
+        {
             self.p.bump();
         }
         self.p.complete(m, Error);

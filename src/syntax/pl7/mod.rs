@@ -6,6 +6,7 @@
 
 pub mod ast;
 pub mod chart;
+mod dfb;
 mod expr;
 pub mod functions;
 mod grammar;

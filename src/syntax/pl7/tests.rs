@@ -942,3 +942,41 @@ proptest! {
         prop_assert_eq!(last.rows().flat_map(|it| it.cells()).count(), 2);
     }
 }
+
+/// The form that interfaces are read in: the vendor has not published his.
+#[test]
+fn dfb_types() {
+    let text = "FUNCTION_BLOCK Cpt (*a*)\nVAR_INPUT\n Raz, Autre : EBOOL := FALSE;\n Tab : AR_W:20;\nEND_VAR\nVAR Mots : AR_D[4];\n\
+                2x-é : WORD;\nEND_VAR\n! Raz := Tab[2] > 3;\nEND_FUNCTION_BLOCK\n";
+    let found = shape(&legal(parse_st(text)));
+    assert_eq!(
+        found,
+        "(Heading FUNCTION_BLOCK Cpt) (VarSection VAR_INPUT (VarDecl (VarName Raz) , (VarName Autre) : (TypeRef EBOOL) := \
+         (InitValue FALSE) ;) (VarDecl (VarName Tab) : (TypeRef AR_W :20) ;) END_VAR) (VarSection VAR (VarDecl (VarName \
+         Mots) : (TypeRef AR_D [ 4 ]) ;) (VarDecl (VarName 2 x - é) : (TypeRef WORD) ;) END_VAR) (Sentence ! (AssignStmt \
+         (NameRef Raz) := (BinExpr (NameRef Tab (Index [ (Literal 2) ])) > (Literal 3)) ;)) END_FUNCTION_BLOCK"
+    );
+    legal(parse_ld(
+        "FUNCTION_BLOCK A\nVAR_INPUT b : EBOOL; END_VAR\nRUNG\nOPEN_CONTACT(b),COIL(b);\nEND_RUNG\nEND_FUNCTION_BLOCK",
+    ));
+    legal(parse_il("FUNCTION_BLOCK A\n! LD b\n ST c\nEND_FUNCTION_BLOCK"));
+}
+
+#[test]
+fn dfb_types_that_are_cut() {
+    let check = |text: &str, expected: &[&str]| {
+        assert_eq!(errors(&parse_st(text)), expected, "{text}");
+    };
+    check("FUNCTION_BLOCK A\n! b := 1;\n", &[";: expected `END_FUNCTION_BLOCK` after this"]);
+    check("FUNCTION_BLOCK A\nVAR\nb : BOOL;\nEND_FUNCTION_BLOCK", &[";: expected `END_VAR` after this"]);
+    check(
+        "FUNCTION_BLOCK A\nVAR\nb : BOOL\nc : BOOL;\nEND_VAR\nEND_FUNCTION_BLOCK",
+        &["BOOL: expected `;` after this"],
+    );
+    check("FUNCTION_BLOCK\nEND_FUNCTION_BLOCK", &["FUNCTION_BLOCK: expected the name of the DFB type after this"]);
+    check("FUNCTION_BLOCK A\nEND_FUNCTION_BLOCK\nc := 1;", &["c: nothing follows `END_FUNCTION_BLOCK`"]);
+    for part in ["VAR ", "a:", "END_VAR ", "FUNCTION_BLOCK ", "a,", "END_FUNCTION_BLOCK "] {
+        let text = format!("FUNCTION_BLOCK A\nVAR {}", part.repeat(20_000));
+        assert_eq!(parse_st(&text).syntax().text(), text.as_str());
+    }
+}
