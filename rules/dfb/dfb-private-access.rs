@@ -17,9 +17,12 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         // In the code of a DFB, no instance is visible at all.
         let mut uses_outside = uses.uses.iter().filter(|it| !matches!(cx.program.entity(it.unit), Entity::Dfb { .. }));
         if let Some(first) = uses_outside.next() {
-            let what = item.role.describe();
-            let message = format!("`{}` is an {what} of the DFB, which is not visible outside of it", uses.object.text)
-                .replace("an private", "a private");
+            let what = match item.role {
+                Role::Input => "an input",
+                Role::InOut => "an in/out parameter",
+                _ => "a private variable",
+            };
+            let message = format!("`{}` is {what} of the DFB, which is not visible outside of it", uses.object.text);
             sink.report(first.site(), message)
                 .related(Site { unit, anchor: item.anchor }, "declared here")
                 .related_all(uses_outside.map(|it| (it.site(), format!("also {} here", it.mode.verb()))));

@@ -15,7 +15,7 @@ use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
 use super::literal::{LiteralError, Value};
-use super::object::{AddressError, Object, Type};
+use super::object::{AddressError, Object};
 use super::symbols::{Remark, Symbol};
 use crate::syntax::Language;
 
@@ -278,8 +278,6 @@ pub struct Argument {
     pub range: TextRange,
     /// Place among the parameters, from 0: positions may be left open.
     pub position: u32,
-    /// What kind of value is given, for an instance of a DFB.
-    pub ty: Option<Type>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -296,7 +294,7 @@ pub struct Call {
     pub instance: Option<BlockName>,
     pub instance_range: Option<TextRange>,
     pub arguments: Vec<Argument>,
-    /// Whether the instruction can pass parameters and an instance (`CALL`, not `UC`/`CC`).
+    /// Whether the instruction can pass parameters and an instance (`CALL`, not `UC`/`CC`), and `arguments` has them all.
     pub full: bool,
 }
 

@@ -911,7 +911,7 @@ impl Machine {
                 }
             };
             let position = index(arguments.len());
-            arguments.push(Argument { name, object, range, position, ty: None });
+            arguments.push(Argument { name, object, range, position });
         }
         let anchor = self.b.anchor(callee_node.range());
         if let Some(node) = &instance_node {

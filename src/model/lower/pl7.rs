@@ -463,14 +463,8 @@ impl Pl7 {
         for (position, argument) in it.arguments().into_iter().enumerate() {
             let Some(argument) = argument else { continue };
             let at = argument.syntax().text_range();
-            let (object, _, kind) = self.argument(&argument, function, position);
-            let ty = match (object, kind) {
-                (Some(object), _) => Some(self.ty(object)),
-                (None, Kind::Bit) => Some(Type::Bool),
-                (None, Kind::Float) => Some(Type::Float),
-                (None, Kind::Number | Kind::Unknown) => None,
-            };
-            arguments.push(Argument { name: None, object, range: at, position: index(position), ty });
+            let (object, ..) = self.argument(&argument, function, position);
+            arguments.push(Argument { name: None, object, range: at, position: index(position) });
         }
         let callee_kind = match function {
             Some(_) => Callee::Function(name),
