@@ -3,6 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use super::program::ProgramIndex;
+use crate::model::unit::Callee;
 
 /// The calls that lead out of each unit to another unit of the program, in the order of the code, one for each callee.
 fn callees(program: &ProgramIndex<'_>) -> Vec<Vec<u32>> {
@@ -88,7 +89,10 @@ pub fn cycles(program: &ProgramIndex<'_>) -> Vec<Vec<u32>> {
 /// Chains of calls that start in a unit that the system runs and have `limit` + 1 calls: the shortest part of a longest
 /// chain that is too deep, one for each call that goes beyond the limit.
 pub fn too_deep(program: &ProgramIndex<'_>, limit: u32) -> Vec<Vec<u32>> {
-    let callees = callees(program);
+    // A DFB calls nothing (PL7:5480-5487), and its call is no level of subroutines (PL7:1964).
+    let mut callees = callees(program);
+    let is_instance = |call: u32| matches!(program.calls[call as usize].it.callee, Callee::Instance(_));
+    callees.iter_mut().for_each(|it| it.retain(|&call| !is_instance(call)));
     let mut back = FxHashSet::default();
     let done = walk(program, &callees, |_, call| {
         back.insert(call);
