@@ -1,8 +1,8 @@
 //! Views of a tree: a borrowed green node or token with its place.
 //!
-//! A view is two words, copied freely, and knows what is below it, not what is above: who needs the way down to a place
-//! keeps it, or asks [`SyntaxNode::path_to`]. Walking costs nothing but reading the tree, which is why the whole pipeline
-//! works on views and not on nodes that allocate and count references.
+//! A view is a few words, copied freely, and knows what is below it, not what is above: who needs the way down to a place
+//! keeps it. Walking costs nothing but reading the tree, which is why the whole pipeline works on views and not on nodes
+//! that allocate and count references.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -153,17 +153,6 @@ impl<'t> SyntaxNode<'t> {
             WalkEvent::Token(token) => Some(token),
             WalkEvent::Enter(_) | WalkEvent::Leave(_) => None,
         })
-    }
-
-    /// This node and those below it that cover a range, outermost first.
-    pub fn path_to(self, range: TextRange) -> Vec<SyntaxNode<'t>> {
-        let mut path = Vec::new();
-        let mut current = Some(self).filter(|it| it.text_range().contains_range(range));
-        while let Some(node) = current {
-            path.push(node);
-            current = node.children().find(|it| it.text_range().contains_range(range));
-        }
-        path
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! **Invariant:** whether two objects share memory is decided by their [`Footprint`]s, never by their spelling.
 
+mod address;
 pub mod pl7;
 pub mod pl72;
 pub mod step7;

@@ -3,11 +3,11 @@
 //! Numbers that only some controller lacks are not judged here: that is the business of [`crate::target`].
 
 use std::borrow::Cow;
-use std::ops::RangeInclusive;
 
 use smol_str::{SmolStr, format_smolstr};
 
-use super::{AddressError, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
+use super::address::{Cursor, LONGEST_SUGGESTION_SOURCE, Number, Place, malformed};
+use super::{AddressError, AddressErrorKind, Area, Class, Object, Rights, Type};
 
 /// Object numbers above this one exist on no controller. The largest counts of the manual are 32634 bits (PL7:1691) and
 /// 30.5 K words (PL7:1705); a configured count is the business of the target.
@@ -31,9 +31,6 @@ const RANKED_BITS: u32 = 1024;
 /// Ranks go to 255 (PL7:811), so a channel takes 256 bits, or 256 words and room for the tail of a double word.
 const RANKS: u32 = 256;
 const CHANNEL_WORDS: u32 = 2 * RANKS * 16;
-/// A suggestion for an address longer than any valid one helps nobody.
-const LONGEST_SUGGESTION_SOURCE: usize = 40;
-
 /// Reads an address without blanks, in either case: `%MW10:X4`, `%I\0.2.1\0.7`, `%TM8.Q`.
 ///
 /// # Errors
@@ -42,7 +39,7 @@ const LONGEST_SUGGESTION_SOURCE: usize = 40;
 pub fn parse(address: &str) -> Result<Object, AddressError> {
     let upper = upper_case(address);
     match read(&upper) {
-        Ok(place) => Ok(place.object(address.into())),
+        Ok(place) => Ok(place.object(address.into(), BLOCK_BITS)),
         Err(error) => Err(with_suggestion(error, &upper)),
     }
 }
@@ -80,7 +77,7 @@ pub fn parse_indexed(base: &str, suffix: Option<&str>) -> Result<Object, Address
         return Err(malformed(format!("`{base}` cannot be indexed: the objects that can are listed in PL7:1102-1119")));
     };
     let text = format_smolstr!("{base}[..]{suffix}");
-    Ok(Object { indexed: true, rights, ..place.object(text) })
+    Ok(Object { indexed: true, rights, ..place.object(text, BLOCK_BITS) })
 }
 
 /// The address that a bare name seems to be: `%MW108` for `MW108`, `%X3.T` for `X3.T`. `None` when the name does not look
@@ -123,42 +120,7 @@ pub fn macro_step_of(object: &Object) -> Option<u32> {
     (index / MACRO_STRIDE).checked_sub(1)
 }
 
-/// An object before it has a text.
-#[derive(Debug, Clone)]
-struct Place {
-    class: Class,
-    ty: Type,
-    area: Area,
-    start: u32,
-    rights: Rights,
-    extracted: bool,
-    /// Whether `:L` may follow, and how many elements there are from this one to the last.
-    room: Option<u32>,
-}
-
 impl Place {
-    fn new(class: Class, ty: Type, area: Area, start: u32, rights: Rights) -> Self {
-        Self { class, ty, area, start, rights, extracted: false, room: None }
-    }
-
-    fn with_room(self, room: u32) -> Self {
-        Self { room: Some(room), ..self }
-    }
-
-    fn object(self, text: SmolStr) -> Object {
-        // A block as a whole covers all its items, whatever it has.
-        let bits = self.ty.bits().unwrap_or(if self.class == Class::Block { BLOCK_BITS } else { 1 });
-        Object {
-            text,
-            class: self.class,
-            ty: self.ty,
-            footprint: Footprint::new(self.area, self.start, bits),
-            rights: self.rights,
-            extracted: self.extracted,
-            indexed: false,
-        }
-    }
-
     /// `:X4`. PL7:631 allows it for single words alone.
     fn bit(self, rank: Number<'_>) -> Result<Self, AddressError> {
         if self.ty != Type::Word {
@@ -294,83 +256,10 @@ const BLOCKS: &[BlockSymbol] = &[
     },
 ];
 
-/// Digits and their value, which is `u32::MAX` when it does not fit.
-#[derive(Clone, Copy)]
-struct Number<'a> {
-    text: &'a str,
-    value: u32,
-}
-
 impl Number<'_> {
-    fn within(self, what: &str, range: RangeInclusive<u32>, source: &str) -> Result<u32, AddressError> {
-        if range.contains(&self.value) {
-            return Ok(self.value);
-        }
-        let (first, last) = range.into_inner();
-        // Digits are ASCII, so any cut is a character boundary.
-        let shown = self.text.get(..12).map_or_else(|| self.text.to_owned(), |head| format!("{head}..."));
-        Err(out_of_range(format!("{what} {shown} does not exist: from {first} to {last} ({source})")))
-    }
-
     fn object_number(self) -> Result<u32, AddressError> {
         self.within("object number", 0..=LAST_NUMBER, "no controller has more, PL7:1584-1728")
     }
-}
-
-struct Cursor<'a> {
-    rest: &'a str,
-}
-
-impl<'a> Cursor<'a> {
-    fn eat(&mut self, char: char) -> bool {
-        match self.rest.strip_prefix(char) {
-            Some(rest) => {
-                self.rest = rest;
-                true
-            }
-            None => false,
-        }
-    }
-
-    fn take_while(&mut self, accept: impl Fn(u8) -> bool) -> &'a str {
-        let end = self.rest.bytes().position(|it| !accept(it)).unwrap_or(self.rest.len());
-        let (head, rest) = self.rest.split_at(end);
-        self.rest = rest;
-        head
-    }
-
-    fn letters(&mut self) -> &'a str {
-        self.take_while(|it| it.is_ascii_uppercase())
-    }
-
-    fn number(&mut self) -> Option<Number<'a>> {
-        let text = self.take_while(|it| it.is_ascii_digit());
-        if text.is_empty() {
-            return None;
-        }
-        let value = text.bytes().fold(0u32, |sum, it| sum.saturating_mul(10).saturating_add(u32::from(it - b'0')));
-        Some(Number { text, value })
-    }
-
-    fn need_number(&mut self, what: &str) -> Result<Number<'a>, AddressError> {
-        self.number().ok_or_else(|| malformed(format!("the {what} is missing")))
-    }
-
-    fn need(&mut self, char: char) -> Result<(), AddressError> {
-        if self.eat(char) { Ok(()) } else { Err(malformed(format!("`{char}` is missing"))) }
-    }
-
-    fn at(&self, char: char) -> bool {
-        self.rest.starts_with(char)
-    }
-}
-
-fn malformed(message: impl Into<String>) -> AddressError {
-    AddressError { kind: AddressErrorKind::Malformed, message: message.into(), suggestion: None }
-}
-
-fn out_of_range(message: String) -> AddressError {
-    AddressError { kind: AddressErrorKind::OutOfRange, message, suggestion: None }
 }
 
 /// Reads an address in upper case.

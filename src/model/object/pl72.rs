@@ -3,11 +3,10 @@
 //! Numbers that only some controller lacks are not judged here, nor whether a word is reached directly (PL72:289): that is
 //! the business of [`crate::target`].
 
-use std::ops::RangeInclusive;
-
 use smol_str::{SmolStr, format_smolstr};
 
-use super::{AddressError, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
+use super::address::{Cursor, LONGEST_SUGGESTION_SOURCE, Number, Place, malformed, out_of_range};
+use super::{AddressError, AddressErrorKind, Area, Class, Object, Rights, Type};
 use crate::target::pl72::{self as target, Writer};
 
 /// PL72:263.
@@ -25,9 +24,6 @@ const LAST_COMMON_WORD: u32 = 3;
 const LAST_RANK: u32 = 15;
 /// The rack that is not written (PL72:214, PL72:1073-1076 beside PL72:194-198).
 const RACK_0: u32 = 0;
-/// A suggestion for an address longer than any valid one helps nobody.
-const LONGEST_SUGGESTION_SOURCE: usize = 40;
-
 /// What an address names, and the word that is added to its number.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Address {
@@ -45,9 +41,9 @@ pub fn parse(address: &str) -> Result<Address, AddressError> {
     let upper = address.to_ascii_uppercase();
     match read(&upper) {
         Ok((place, index)) => {
-            let index = index.map(|(text, place)| place.object(text.into()));
+            let index = index.map(|(text, place)| place.object(text.into(), BLOCK_BITS));
             let indexed = index.is_some();
-            Ok(Address { object: Object { indexed, ..place.object(address.into()) }, index })
+            Ok(Address { object: Object { indexed, ..place.object(address.into(), BLOCK_BITS) }, index })
         }
         Err(mut error) => {
             if error.suggestion.is_none() && error.kind == AddressErrorKind::Malformed {
@@ -103,44 +99,9 @@ pub fn channel(address: &str) -> Option<Channel> {
     if is_word { read_word_channel(&mut at, is_output) } else { read_channel(&mut at, is_output) }.ok()
 }
 
-/// An object before it has a text.
-#[derive(Debug, Clone)]
-struct Place {
-    class: Class,
-    ty: Type,
-    area: Area,
-    start: u32,
-    rights: Rights,
-    extracted: bool,
-    /// Whether `[n]` may follow, and how many elements there are from this one to the last.
-    room: Option<u32>,
-}
-
 impl Place {
-    fn new(class: Class, ty: Type, area: Area, start: u32, rights: Rights) -> Self {
-        Self { class, ty, area, start, rights, extracted: false, room: None }
-    }
-
-    fn with_room(self, room: u32) -> Self {
-        Self { room: Some(room), ..self }
-    }
-
-    fn object(self, text: SmolStr) -> Object {
-        // A block as a whole covers all its items, whatever it has.
-        let bits = self.ty.bits().unwrap_or(if self.class == Class::Block { BLOCK_BITS } else { 1 });
-        Object {
-            text,
-            class: self.class,
-            ty: self.ty,
-            footprint: Footprint::new(self.area, self.start, bits),
-            rights: self.rights,
-            extracted: self.extracted,
-            indexed: false,
-        }
-    }
-
     /// `W5,A`, where the table of extracted bits has the word (PL72:299-310).
-    fn bit(self, at: &mut Cursor<'_>, rights: Rights) -> Result<Self, AddressError> {
+    fn extracted_bit(self, at: &mut Cursor<'_>, rights: Rights) -> Result<Self, AddressError> {
         let rank = at.hexadecimal("the bit of a word is one digit from 0 to F (PL72:372, PL72:376)")?;
         Ok(Self {
             ty: Type::Bool,
@@ -279,63 +240,7 @@ const BLOCKS: &[BlockSymbol] = &[
     },
 ];
 
-/// Digits and their value, which is `u32::MAX` when it does not fit.
-#[derive(Clone, Copy)]
-struct Number<'a> {
-    text: &'a str,
-    value: u32,
-}
-
-impl Number<'_> {
-    fn within(self, what: &str, range: RangeInclusive<u32>, source: &str) -> Result<u32, AddressError> {
-        if range.contains(&self.value) {
-            return Ok(self.value);
-        }
-        Err(self.missing(what, &format!("from {} to {} ({source})", range.start(), range.end())))
-    }
-
-    fn missing(self, what: &str, instead: &str) -> AddressError {
-        // Digits are ASCII, so any cut is a character boundary.
-        let shown = self.text.get(..12).map_or_else(|| self.text.to_owned(), |head| format!("{head}..."));
-        out_of_range(format!("{what} {shown} does not exist: {instead}"))
-    }
-}
-
-struct Cursor<'a> {
-    rest: &'a str,
-}
-
-impl<'a> Cursor<'a> {
-    fn eat(&mut self, char: char) -> bool {
-        let rest = self.rest.strip_prefix(char);
-        self.rest = rest.unwrap_or(self.rest);
-        rest.is_some()
-    }
-
-    fn need(&mut self, char: char) -> Result<(), AddressError> {
-        if self.eat(char) { Ok(()) } else { Err(malformed(format!("`{char}` is missing"))) }
-    }
-
-    fn take_while(&mut self, accept: impl Fn(u8) -> bool) -> &'a str {
-        let end = self.rest.bytes().position(|it| !accept(it)).unwrap_or(self.rest.len());
-        let (head, rest) = self.rest.split_at(end);
-        self.rest = rest;
-        head
-    }
-
-    fn letters(&mut self) -> &'a str {
-        self.take_while(|it| it.is_ascii_uppercase())
-    }
-
-    fn number(&mut self, what: &str) -> Result<Number<'a>, AddressError> {
-        let text = self.take_while(|it| it.is_ascii_digit());
-        if text.is_empty() {
-            return Err(malformed(format!("the {what} is missing")));
-        }
-        let value = text.bytes().fold(0u32, |sum, it| sum.saturating_mul(10).saturating_add(u32::from(it - b'0')));
-        Ok(Number { text, value })
-    }
-
+impl Cursor<'_> {
     /// One digit from 0 to F.
     fn hexadecimal(&mut self, form: &'static str) -> Result<u32, AddressError> {
         let text = self.take_while(|it| it.is_ascii_alphanumeric());
@@ -345,14 +250,6 @@ impl<'a> Cursor<'a> {
             _ => Err(malformed(form)),
         }
     }
-}
-
-fn malformed(message: impl Into<String>) -> AddressError {
-    AddressError { kind: AddressErrorKind::Malformed, message: message.into(), suggestion: None }
-}
-
-fn out_of_range(message: String) -> AddressError {
-    AddressError { kind: AddressErrorKind::OutOfRange, message, suggestion: None }
 }
 
 type Indexed<'a> = (Place, Option<(&'a str, Place)>);
@@ -366,7 +263,7 @@ fn read(text: &str) -> Result<Indexed<'_>, AddressError> {
     let mut place = base(&mut at)?;
     let mut index = None;
     if at.eat('[') {
-        place = place.string(at.number("length")?)?;
+        place = place.string(at.need_number("length")?)?;
         at.need(']')?;
     } else if at.eat('(') {
         if !matches!(place.class, Class::Memory | Class::Constant) || place.ty != Type::Word {
@@ -397,12 +294,12 @@ fn base(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
     }
     match letters {
         "B" => {
-            let number = at.number("number of the bit")?.within("bit", 0..=LAST_BIT, "PL72:263")?;
+            let number = at.need_number("number of the bit")?.within("bit", 0..=LAST_BIT, "PL72:263")?;
             let place = Place::new(Class::Memory, Type::Bool, Area::Bits, number, Rights::ReadWrite);
             Ok(place.with_room(LAST_BIT - number + 1))
         }
         "SY" => {
-            let number = at.number("number of the system bit")?;
+            let number = at.need_number("number of the system bit")?;
             let number = number.within("system bit", 0..=LAST_SYSTEM_BIT, "PL72:264")?;
             let rights = system_rights(target::system_bit(number));
             Ok(Place::new(Class::System, Type::Bool, Area::SystemBits, number, rights))
@@ -410,11 +307,11 @@ fn base(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
         "W" => words(at, Class::Memory, Area::Words, Rights::ReadWrite, Rights::ReadWrite),
         "CW" => words(at, Class::Constant, Area::Constants, read_only("PL72:277"), read_only("PL72:302")),
         "SW" => {
-            let number = at.number("number of the system word")?;
+            let number = at.need_number("number of the system word")?;
             let number = number.within("system word", 0..=LAST_SYSTEM_WORD, "PL72:278")?;
             let rights = system_rights(target::system_word(number));
             let place = Place::new(Class::System, Type::Word, Area::SystemWords, number * 16, rights);
-            if at.eat(',') { place.bit(at, rights) } else { Ok(place) }
+            if at.eat(',') { place.extracted_bit(at, rights) } else { Ok(place) }
         }
         "COM" => common_word(at),
         "X" => step(at),
@@ -453,26 +350,26 @@ fn words(
     rights: Rights,
     bit_rights: Rights,
 ) -> Result<Place, AddressError> {
-    let number = at.number("number of the word")?.within("word", 0..=LAST_WORD, "PL72:276-277")?;
+    let number = at.need_number("number of the word")?.within("word", 0..=LAST_WORD, "PL72:276-277")?;
     let place = Place::new(class, Type::Word, area, number * 16, rights);
-    if at.eat(',') { place.bit(at, bit_rights) } else { Ok(place.with_room(LAST_WORD - number + 1)) }
+    if at.eat(',') { place.extracted_bit(at, bit_rights) } else { Ok(place.with_room(LAST_WORD - number + 1)) }
 }
 
 /// `COM2,1`, `COM2,1,A`. A program writes those of its own station only, which no program says.
 fn common_word(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
-    let station = at.number("station number")?.within("station", 0..=LAST_STATION, "PL72:279-280")?;
+    let station = at.need_number("station number")?.within("station", 0..=LAST_STATION, "PL72:279-280")?;
     at.need(',')?;
-    let number = at.number("number of the common word")?;
+    let number = at.need_number("number of the common word")?;
     let number = number.within("common word", 0..=LAST_COMMON_WORD, "PL72:279-280")?;
     let area = Area::Network(0, station);
     let place = Place::new(Class::NetworkWord, Type::Word, area, number * 16, Rights::Unknown);
-    if at.eat(',') { place.bit(at, Rights::Unknown) } else { Ok(place) }
+    if at.eat(',') { place.extracted_bit(at, Rights::Unknown) } else { Ok(place) }
 }
 
 /// `X3`, `X3,V`.
 fn step(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
     let steps = target::STEP_NUMBERS;
-    let number = at.number("number of the step")?.within("step", steps.first..=steps.last, steps.source)?;
+    let number = at.need_number("number of the step")?.within("step", steps.first..=steps.last, steps.source)?;
     if !at.eat(',') {
         return Ok(Place::new(Class::Step, Type::Bool, Area::Steps, number, Rights::ReadWrite));
     }
@@ -484,9 +381,9 @@ fn step(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
 
 /// `S1,3`: fault j of module x of a TSX 17-20 (PL72:1742-1765).
 fn module_fault(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
-    let module = at.number("number of the module")?.within("module", 0..=3, "PL72:1744-1747")?;
+    let module = at.need_number("number of the module")?.within("module", 0..=3, "PL72:1744-1747")?;
     at.need(',')?;
-    let fault = at.number("number of the fault")?.within("fault", 0..=7, "PL72:1749-1765")?;
+    let fault = at.need_number("number of the fault")?.within("fault", 0..=7, "PL72:1749-1765")?;
     let area = Area::Faults(format_smolstr!("S{module}"));
     Ok(Place::new(Class::Fault, Type::Bool, area, fault, read_only("PL72:267")))
 }
@@ -501,7 +398,7 @@ struct ModuleNumber {
 impl ModuleNumber {
     /// `y`: module 0 to 7 of rack 0 or of a controller without racks; `xy`: rack 0 or 1 and module 0 to 7.
     fn read(at: &mut Cursor<'_>) -> Result<Self, AddressError> {
-        let number = at.number("number of the module")?;
+        let number = at.need_number("number of the module")?;
         let part = |value| Number { text: number.text, value };
         let has_rack = number.text.len() > 1;
         if number.text.len() > 2 {
@@ -582,7 +479,7 @@ fn input(module: SmolStr, number: u32, rights: Rights) -> Place {
 
 /// `1,3`, `03,7`: module 0 to 3 of rack 0 (PL72:160-162, PL72:239-243).
 fn read_word_channel(at: &mut Cursor<'_>, is_output: bool) -> Result<Channel, AddressError> {
-    let number = at.number("number of the module")?;
+    let number = at.need_number("number of the module")?;
     let has_rack = number.text.len() > 1;
     let module = number.within("module with register words", 0..=3, "PL72:160, PL72:239-243")?;
     if number.text.len() > 2 {
@@ -591,7 +488,7 @@ fn read_word_channel(at: &mut Cursor<'_>, is_output: bool) -> Result<Channel, Ad
     if !at.eat(',') {
         return Err(malformed("the number of the word is missing: `IWx,i` (PL72:156-162)"));
     }
-    let word = at.number("number of the register word")?.within("register word", 0..=7, "PL72:162, PL72:241")?;
+    let word = at.need_number("number of the register word")?.within("register word", 0..=7, "PL72:162, PL72:241")?;
     Ok(Channel { is_output, has_rack, rack: RACK_0, module, item: ChannelItem::Word(word) })
 }
 
@@ -606,14 +503,14 @@ fn register_word(at: &mut Cursor<'_>, is_output: bool) -> Result<Place, AddressE
     };
     let area = Area::ModuleWords(format_smolstr!("{letters}{}", channel.module));
     let place = Place::new(class, Type::Word, area, word * 16, rights);
-    if at.eat(',') { place.bit(at, bit_rights) } else { Ok(place) }
+    if at.eat(',') { place.extracted_bit(at, bit_rights) } else { Ok(place) }
 }
 
 /// `T0`, `T0,D`, `FC,V`, `D1,W3`.
 fn block_object(block: &BlockSymbol, at: &mut Cursor<'_>) -> Result<Place, AddressError> {
     let number = match block.last {
         Some(last) => {
-            let number = at.number("number of the block")?;
+            let number = at.need_number("number of the block")?;
             if block.symbol == "C" && number.value == last + 1 {
                 // Only the terminal reaches the fast counter by this number.
                 let message = format!("counter {} is the fast counter, in a program `FC` (PL72:869)", number.value);
@@ -631,7 +528,7 @@ fn block_object(block: &BlockSymbol, at: &mut Cursor<'_>) -> Result<Place, Addre
     }
     let name = at.letters();
     if block.symbol == "D" && name == "W" {
-        let step = at.number("number of the drum step")?.within("drum step", 0..=DRUM_STEPS - 1, "PL72:893")?;
+        let step = at.need_number("number of the drum step")?.within("drum step", 0..=DRUM_STEPS - 1, "PL72:893")?;
         let start = DRUM_WORDS + 16 * step;
         return Ok(Place::new(Class::BlockWord, Type::Word, area, start, read_only("PL72:894")));
     }
