@@ -13,7 +13,8 @@ use crate::syntax::{AstNode as _, Language, SyntaxKind};
 const SYSTEM_TABLE: std::ops::RangeInclusive<u32> = 50..=53;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if matches!(cx.model.language, Language::Awl(_)) {
+    let is_awl = matches!(cx.model.language, Language::Awl(_));
+    if is_awl || !cx.model.objects.iter().any(|it| it.ty.is_table()) {
         return;
     }
     places(cx, sink);

@@ -10,6 +10,10 @@ const PINS: [Pin; 7] = [Pin::Start, Pin::Preset, Pin::Up, Pin::Down, Pin::Store,
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for uses in cx.program.objects.iter().filter(|it| it.object.is_fixed()) {
+        let mut drives = uses.with_mode(|it| matches!(it, Mode::Drive(_)));
+        if drives.next().is_none() || drives.next().is_none() {
+            continue;
+        }
         for pin in PINS {
             let mut places: Vec<GlobalUse<'_>> =
                 uses.with_mode(|it| it == Mode::Drive(pin)).filter(|it| counts(cx, it, pin)).copied().collect();

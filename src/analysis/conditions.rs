@@ -119,16 +119,17 @@ pub fn constant(exprs: &mut Exprs, condition: ExprId) -> Option<bool> {
 
 /// The conjuncts of a condition, at most 256 of them looked into.
 fn spread(exprs: &Exprs, condition: ExprId, out: &mut Vec<ExprId>) {
-    let mut stack = vec![condition];
+    let mut at = out.len();
     let mut budget = 256;
-    while let Some(id) = stack.pop() {
+    out.push(condition);
+    while let Some(&id) = out.get(at) {
         match exprs.get(id) {
             &Expr::And(a, b) if budget > 0 => {
                 budget -= 1;
-                stack.push(b);
-                stack.push(a);
+                out[at] = a;
+                out.push(b);
             }
-            _ => out.push(id),
+            _ => at += 1,
         }
     }
 }
@@ -269,6 +270,9 @@ impl Table {
     /// Rows that the laws between atoms allow.
     fn lawful(&self, exprs: &Exprs) -> Bits {
         let mut rows = self.constant(true);
+        if !self.order.iter().any(|it| matches!(exprs.get(*it), Expr::Edge { .. } | Expr::Compare(..))) {
+            return rows;
+        }
         let full = self.constant(true);
         let mut forbid = |literals: &[(usize, bool)]| {
             let mut bad = full.clone();
