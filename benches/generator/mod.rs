@@ -196,7 +196,7 @@ struct Section {
 
 impl Section {
     fn new(number: u64, next_timer: u64) -> Self {
-        Self { first: number * 100 % 65_000, next_bit: 0, next_timer }
+        Self { first: number * 100 % 30_000, next_bit: 0, next_timer }
     }
 
     /// A word that is computed with, one of thirty.
