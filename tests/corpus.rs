@@ -1,14 +1,14 @@
 //! The corpus: every finding in it was judged by hand, and a snapshot of each folder keeps it so.
 //!
 //! A folder of `corpus/` that holds programs is checked by itself, as a user would: once with the rules that are on
-//! from the start, once with all of them. `corpus/README.md` says where the programs are from.
+//! from the start, once with all of them, and with its `plclint.toml` where it has one. `corpus/README.md` says where the programs are from.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use plclint::db::{self, Input};
 use plclint::lint::Outcome;
-use plclint::lint::settings::{Folders, Overrides, Settings};
+use plclint::lint::settings::{self, Folders, Overrides, Settings};
 use plclint::report::{self, Format, Options};
 use plclint::source::detect::{self, Dialect, FileHint};
 
@@ -33,7 +33,7 @@ fn folders() -> Vec<(String, Vec<PathBuf>)> {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
                 open.push(path);
-            } else if path.extension().is_none_or(|it| it != "md") {
+            } else if path.extension().is_none_or(|it| it != "md" && it != "toml") {
                 files.push(path);
             }
         }
@@ -59,7 +59,11 @@ fn load(path: &Path, dialect: Dialect) -> Input {
 
 fn check(files: &[PathBuf], select: Option<&str>) -> Outcome {
     let overrides = Overrides { select: select.map(|it| vec![it.to_owned()]), ..Overrides::default() };
-    let settings = Settings::without_file(Folders::default(), overrides).expect("a selection");
+    let folder = files.first().and_then(|it| it.parent()).expect("a file in a folder");
+    let file = folder.join(settings::FILE_NAME);
+    let text = if file.exists() { fs::read_to_string(&file).expect("UTF-8") } else { String::new() };
+    let folders = Folders { root: folder.to_owned(), current: root() };
+    let settings = Settings::parse(&text, &file, folders, overrides).expect("a configuration");
     let inputs = files.iter().map(|path| {
         let known = !UNRECOGNISED.contains(&relative(path).as_str());
         load(path, if known { Dialect::Auto } else { Dialect::Pl7St })
