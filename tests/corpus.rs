@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use plclint::db::{self, Input};
-use plclint::lint::Outcome;
 use plclint::lint::settings::{self, Folders, Overrides, Settings};
+use plclint::lint::{Location, Outcome};
 use plclint::report::{self, Format, Options};
 use plclint::source::detect::{self, Dialect, FileHint};
 
@@ -121,6 +121,47 @@ fn clean_programs_have_no_finding() {
         for select in [None, Some("all")] {
             assert_eq!(findings(&check(files, select)), "", "{name}");
         }
+    }
+}
+
+/// What a finding says, and the text of the lines that it points at with the column: the same however the program was
+/// exported.
+fn said(outcome: &Outcome) -> Vec<String> {
+    let place = |at: Location| {
+        let text = &outcome.files[at.file as usize].text;
+        let (start, end) = (usize::from(at.range.start()), usize::from(at.range.end()));
+        let from = text[..start].rfind('\n').map_or(0, |it| it + 1);
+        let to = text[end..].find('\n').map_or(text.len(), |it| end + it);
+        format!("{}: {}", start - from, text[from..to].replace("\r\n", "\n").trim_end())
+    };
+    let all = outcome.diagnostics.iter().map(|it| {
+        let (entity, it) = (&it.entity, &it.finding);
+        let related: Vec<String> = it.related.iter().map(|it| format!("{} {}", place(it.place), it.message)).collect();
+        let (code, severity, here) = (it.rule.code, it.severity, place(it.place));
+        format!("{entity} {code} {severity:?} {} {:?} {here} {related:?} {:?}", it.message, it.label, it.notes)
+    });
+    let mut all: Vec<String> = all.collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn an_application_file_has_the_findings_of_its_sections() {
+    let folders = folders();
+    let files = |name: &str| &folders.iter().find(|it| it.0 == name).expect("a folder of the corpus").1;
+    let (sections, application) = (files("programs/traitement-surface"), files("programs/traitement-surface-fef"));
+    assert!(sections.len() > 20 && application.len() == 1);
+    for select in [None, Some("all")] {
+        let (sections, application) = (check(sections, select), check(application, select));
+        assert!(said(&sections).len() > 15);
+        assert_eq!(said(&sections), said(&application), "{select:?}");
+        // What the vendor keeps for himself is counted, and nothing else.
+        assert!(sections.files.iter().all(|it| it.not_understood == 0));
+        let text = &application.files[0].text;
+        let vendor = text.split("[VENDOR]").nth(1).and_then(|it| it.split("[SOURCE_UNIT]").next()).expect("the block");
+        let missed = application.files[0].not_understood;
+        assert!(missed > vendor.len() / 2 && missed <= vendor.len(), "{missed} of {}", vendor.len());
+        assert_eq!(application.files[0].encoding, "windows-1252");
     }
 }
 
