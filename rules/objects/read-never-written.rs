@@ -3,6 +3,7 @@
 use crate::analysis::Site;
 use crate::analysis::program::{GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Severity, Sink};
+use crate::model::entity::Family;
 use crate::model::object::{Area, Class};
 use crate::model::unit::Mode;
 
@@ -20,8 +21,12 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             !program.writes_indirectly(&uses.object.footprint.area) && !given.iter().any(|byte| covers(*byte, uses))
         });
         for group in unwritten.chunk_by(|&a, &b| same_byte(cx, a, b)) {
-            report(cx, group, "read", "written", sink)
-                .note("this assumes that no operator panel, other station or clock byte of the CPU writes it");
+            let others = if program.family == Family::Step7 {
+                "no operator panel, other station or clock byte of the CPU"
+            } else {
+                "no operator panel or other station"
+            };
+            report(cx, group, "read", "written", sink).note(format!("this assumes that {others} writes it"));
         }
     }
     if !program.has_unresolved(Mode::reads) {

@@ -29,7 +29,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 it.it.own || cx.program.is_startup(it.unit) || !it.it.conditional && !is_in_event(cx, it.unit)
             });
         let is_placed = cx.program.writes_indirectly(&uses.object.footprint.area);
-        if unread || constant_one || is_placed || is_written_otherwise(cx, at, uses) || hidden.may_hold(class, missing) {
+        if unread || constant_one || is_placed || is_written_otherwise(cx, at, uses) || hidden.may_hold(class, missing)
+        {
             continue;
         }
         let Some((first, others)) = places.split_first() else { continue };
