@@ -448,6 +448,12 @@ impl<'a> ProgramIndex<'a> {
         })
     }
 
+    /// The object of a use as its unit writes it.
+    pub fn text_of(&self, it: &GlobalUse<'_>) -> &str {
+        let objects = self.units.get(it.unit as usize).map_or(&[][..], |it| &it.objects);
+        objects.get(it.it.object as usize).map_or("", |it| it.object.text.as_str())
+    }
+
     /// Heading of a unit.
     pub fn heading(unit: u32) -> Site {
         Site { unit, anchor: 0 }
