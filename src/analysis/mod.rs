@@ -12,6 +12,7 @@ pub mod edges;
 pub mod facts;
 pub mod gaps;
 pub mod program;
+pub mod reach;
 pub mod satisfy;
 pub mod symbols;
 
