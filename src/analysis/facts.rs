@@ -15,7 +15,7 @@ use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
-use crate::model::unit::{Access, Call, Callee, Mode, Section, StatementKind};
+use crate::model::unit::{Access, Actual, Call, Callee, Formal, Mode, Section, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -47,8 +47,8 @@ pub struct Use {
     pub holds: bool,
     /// Network or sentence.
     pub network: u32,
-    /// For an actual parameter: the call, an index into the unit's calls, and the name of the formal parameter.
-    pub parameter: Option<(u32, SmolStr)>,
+    /// For an actual parameter: the call, an index into the unit's calls, and the formal parameter.
+    pub parameter: Option<(u32, Formal)>,
 }
 
 /// An object of the unit with how its value is used.
@@ -89,10 +89,10 @@ pub struct FactCall {
     /// Place of the instance.
     pub instance_anchor: Option<u32>,
     pub full: bool,
-    /// Number of parameters given.
-    pub arguments: u32,
-    /// Of an instance of a DFB: positions of the parameters given, from 0, in order.
-    pub given: Vec<u32>,
+    /// What an instance of a DFB is given; objects are indices into [`UnitFacts::objects`].
+    pub actuals: Vec<Actual>,
+    /// See [`Call::too_close`].
+    pub too_close: Option<u32>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -344,9 +344,9 @@ fn set(list: &mut [Option<ExprId>], access: u32, it: ExprId) {
     }
 }
 
-/// Accesses of some modes, those of one object together and in order; objects with one alone are left out.
-fn by_object(model: &UnitModel, wanted: impl Fn(Mode) -> bool) -> Vec<(u32, &Access)> {
-    let mut list: Vec<(u32, &Access)> = (0..).zip(&model.accesses).filter(|it| wanted(it.1.mode)).collect();
+/// Accesses of some sort, those of one object together and in order; objects with one alone are left out.
+fn by_object(model: &UnitModel, wanted: impl Fn(&Access) -> bool) -> Vec<(u32, &Access)> {
+    let mut list: Vec<(u32, &Access)> = (0..).zip(&model.accesses).filter(|it| wanted(it.1)).collect();
     list.sort_by_key(|it| it.1.object);
     let is_alone: Vec<bool> = (0..list.len())
         .map(|at| {
@@ -362,7 +362,9 @@ fn by_object(model: &UnitModel, wanted: impl Fn(Mode) -> bool) -> Vec<(u32, &Acc
 
 /// Group of each access: equal for writes of one object of which at most one takes effect in a scan.
 fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
-    let drives = |it: Mode| it.assigns() || it == Mode::Store || matches!(it, Mode::Drive(_));
+    // Of an actual, the interface of what is called will tell whether it is an output.
+    let may_assign = |it: &Access| it.mode.assigns() || it.mode == Mode::InOut && it.parameter.is_some();
+    let drives = |it: &Access| may_assign(it) || it.mode == Mode::Store || matches!(it.mode, Mode::Drive(_));
     let writes = by_object(model, drives);
     let mut groups: Vec<u32> = (0..u32::try_from(model.accesses.len()).unwrap_or(u32::MAX)).collect();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
@@ -392,7 +394,7 @@ fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
 
 fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
     let stores = |it: Mode| matches!(it, Mode::Set | Mode::Reset | Mode::EdgeMemory);
-    let writes = by_object(model, |it| stores(it) || it.assigns());
+    let writes = by_object(model, |it| stores(it.mode) || it.mode.assigns());
     let mut pairs = Vec::new();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
         for (at, second) in list.iter().take(MAX_COMPARED).enumerate() {
@@ -456,11 +458,8 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
                 .filter(|(range, anchor)| model.anchors.get(*anchor as usize) == Some(range))
                 .map(|it| it.1),
             full: call.full,
-            arguments: u32::try_from(call.arguments.len()).unwrap_or(u32::MAX),
-            given: match call.callee {
-                Callee::Instance(_) => call.arguments.iter().map(|it| it.position).collect(),
-                _ => Vec::new(),
-            },
+            actuals: call.actuals.clone(),
+            too_close: call.too_close,
         })
         .collect()
 }

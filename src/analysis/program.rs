@@ -9,11 +9,11 @@ use smol_str::SmolStr;
 use super::Site;
 use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
-use crate::model::dfb::Interface;
+use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
-use crate::model::unit::{Callee, Mode, Section};
+use crate::model::unit::{Actual, Callee, Formal, Given, Mode, Section};
 use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
@@ -380,6 +380,28 @@ impl<'a> ProgramIndex<'a> {
         Some((unit, self.units.get(unit as usize)?.interface.as_deref()?))
     }
 
+    /// The calls of instances of DFBs whose type the program holds, with its unit and interface.
+    pub fn instance_calls(&self) -> impl Iterator<Item = (&GlobalCall<'a>, &str, u32, &'a Interface)> {
+        self.calls.iter().filter_map(|call| {
+            let Callee::Instance(name) = &call.it.callee else { return None };
+            let (unit, interface) = self.dfb_of(name)?;
+            Some((call, name.as_str(), unit, interface))
+        })
+    }
+
+    /// The object that a call gives to a parameter.
+    pub fn given_object(&self, unit: u32, actual: &Actual) -> Option<&'a Object> {
+        let Given::Object(id) = actual.given else { return None };
+        Some(&self.units.get(unit as usize)?.objects.get(id.0 as usize)?.object)
+    }
+
+    /// Whether a symbol names an address, so that it is no instance of a DFB.
+    pub fn names_address(&self, symbol: &str) -> bool {
+        let name = key(symbol);
+        let mut symbols = self.units.iter().flat_map(|it| &it.symbols);
+        symbols.any(|it| it.object.is_some() && key(&it.name) == name)
+    }
+
     /// Pairs of distinct objects that share memory, by index, the earlier address first.
     pub fn overlaps(&self) -> Vec<(u32, u32)> {
         /// One object is compared with at most this many that start inside it.
@@ -615,13 +637,26 @@ fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -
 
 /// What a called block of the program does with an actual parameter.
 fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit: u32, it: &Use) -> Mode {
-    let Some((call, name)) = &it.parameter else { return it.mode };
+    let Some((call, formal)) = &it.parameter else { return it.mode };
     let Some(&target) = targets.get(&(unit, *call)) else { return it.mode };
-    let declared = &units[target as usize].declared;
-    match declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
-        Some(Section::Input) => Mode::Read,
-        Some(Section::Output) => Mode::Output,
-        _ => it.mode,
+    let facts = units[target as usize];
+    match formal {
+        Formal::Name(name) => {
+            let declared = facts.declared.iter().find(|it| it.name.eq_ignore_ascii_case(name));
+            match declared.map(|it| it.section) {
+                Some(Section::Input) => Mode::Read,
+                Some(Section::Output) => Mode::Output,
+                _ => it.mode,
+            }
+        }
+        // What cannot be written is not, whatever the call asks for: rule F014 says so.
+        Formal::Slot(_) if it.mode == Mode::Read => it.mode,
+        Formal::Slot(slot) => match facts.interface.as_ref().and_then(|it| it.parameter(*slot)).map(|it| it.role) {
+            Some(Role::Input) => Mode::Read,
+            Some(Role::Output) => Mode::Output,
+            Some(Role::InOut) => Mode::InOut,
+            _ => it.mode,
+        },
     }
 }
 

@@ -18,7 +18,7 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Formal, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind,
     Pin, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
@@ -897,7 +897,7 @@ impl Machine {
                     let is_value = !matches!(self.b.model.objects[object.0 as usize].class, Class::CodeBlock);
                     if is_value {
                         let access = self.b.touch(object, mode, range);
-                        self.b.model.accesses[access as usize].parameter = name.clone();
+                        self.b.model.accesses[access as usize].parameter = name.clone().map(Formal::Name);
                     }
                     Some(object)
                 }
@@ -910,8 +910,7 @@ impl Machine {
                     None
                 }
             };
-            let position = index(arguments.len());
-            arguments.push(Argument { name, object, range, position });
+            arguments.push(Argument { name, object, range });
         }
         let anchor = self.b.anchor(callee_node.range());
         if let Some(node) = &instance_node {
@@ -927,7 +926,9 @@ impl Machine {
             instance,
             instance_range: instance_node.map(ast::Operand::range),
             arguments,
+            actuals: Vec::new(),
             full: op == Op::Call,
+            too_close: None,
         };
         let answers: Vec<ObjectId> = call
             .arguments

@@ -14,7 +14,7 @@ use crate::model::entity::{Entity, Part};
 use crate::model::expr::{self, ExprId, Exprs, ObjectId};
 use crate::model::ladder::{Flaw, Grid, Placed, Wire, block_of};
 use crate::model::object::{self, Class, Object};
-use crate::model::unit::{Call, Callee, Leave, Mode, OddityKind, Pin, StatementKind};
+use crate::model::unit::{Actual, Given, Leave, Mode, OddityKind, Pin, Slot, StatementKind};
 use crate::syntax::pl7::ast::{self, Expr, Stmt};
 use crate::syntax::pl7::ladder_words::Element;
 use crate::syntax::{AstNode as _, Language, SyntaxNode};
@@ -69,6 +69,10 @@ struct Run {
     power: Vec<ExprId>,
     /// Conditions of contacts and comparisons, by element.
     tests: FxHashMap<usize, ExprId>,
+    /// Calls of DFBs, by the place of the block.
+    instances: FxHashMap<TextRange, u32>,
+    /// Whether all of the rung was understood, once that was asked.
+    is_read: Option<bool>,
 }
 
 /// A bit that a connected network of a rung uses.
@@ -91,7 +95,8 @@ impl Lowering {
         let networks = grid.networks();
         let mut contacts = Vec::new();
         let mut coils = Vec::new();
-        let mut run = Run { power: vec![Exprs::FALSE; grid.wire_count()], tests: FxHashMap::default() };
+        let power = vec![Exprs::FALSE; grid.wire_count()];
+        let mut run = Run { power, tests: FxHashMap::default(), instances: FxHashMap::default(), is_read: None };
         run.power[Grid::index(Wire::RAIL)] = Exprs::TRUE;
         for (number, elements) in networks.iter().enumerate() {
             self.network(&grid, elements, number, &mut run, &mut contacts, &mut coils);
@@ -201,6 +206,7 @@ impl Lowering {
         let before = run.at(it);
         let through = match it.element {
             Some(Element::HLink | Element::ShortCircuit) => before,
+            Some(Element::Actual) => return,
             Some(Element::Block) => return self.block(grid, it, run),
             Some(Element::Operate) => return self.operate(it, before),
             Some(Element::Call) => {
@@ -251,7 +257,7 @@ impl Lowering {
                     let data = self.pl7.b.model.object(object);
                     if data.class == Class::Symbol {
                         let name = data.text.clone();
-                        self.instance(&name, at, it.range());
+                        self.instance(grid, it, &name, at, run);
                     } else if data.class != Class::Indirect {
                         let text = operand.syntax().text();
                         self.operand_type(format!("`{text}` is no function block"), &operand);
@@ -272,23 +278,33 @@ impl Lowering {
         self.pl7.read(output, at)
     }
 
-    /// A block under a symbol: an instance of a DFB, as far as it shows.
-    fn instance(&mut self, name: &str, at: TextRange, range: TextRange) {
-        let anchor = self.pl7.b.anchor(at);
-        let call = Call {
-            callee: Callee::Instance(name.to_lowercase().into()),
-            text: name.into(),
-            statement: 0,
-            anchor,
-            when: Exprs::TRUE,
-            instance: None,
-            instance_range: None,
-            arguments: Vec::new(),
-            // What its pins are given is not read.
-            full: false,
-        };
-        self.pl7.b.call(call, range);
-        self.pl7.b.wipe();
+    /// A block under a symbol: an instance of a DFB, as far as it shows. It is called in each scan of the rung.
+    fn instance(&mut self, grid: &Grid<'_>, it: &Placed<'_>, name: &str, at: TextRange, run: &mut Run) {
+        let mut actuals = Vec::new();
+        for (row, &wire) in (0..).zip(&it.inputs) {
+            if let Some(operand) = grid.input_actual(wire).and_then(|it| it.cell.operand()) {
+                actuals.push(self.pl7.actual(Slot::Left(row), &operand));
+            } else if grid.is_fed(wire) && (row == 0 || wire != Wire::RAIL) {
+                // A block beside the rail hangs on it by its first row alone.
+                let anchor = self.pl7.b.anchor(at);
+                actuals.push(Actual { slot: Slot::Left(row), anchor, given: Given::Wire });
+            }
+        }
+        for (row, &wire) in (0..).zip(&it.outputs) {
+            if let Some(operand) = grid.output_actual(wire).and_then(|it| it.cell.operand()) {
+                actuals.push(self.pl7.actual(Slot::Right(row), &operand));
+            } else if grid.is_used(wire) {
+                let anchor = self.pl7.b.anchor(at);
+                actuals.push(Actual { slot: Slot::Right(row), anchor, given: Given::Wire });
+            }
+        }
+        let is_read =
+            *run.is_read.get_or_insert_with(|| grid.placed.iter().all(|it| it.element.is_some() && !it.is_broken()));
+        let call = self.pl7.instance(name, at, it.range(), actuals, is_read);
+        run.instances.insert(it.range(), call);
+        if let Some(&before) = grid.too_close(it).and_then(|it| run.instances.get(&it.range())) {
+            self.pl7.b.model.calls[call as usize].too_close = Some(before);
+        }
     }
 
     /// An operation block: done when it has power.
