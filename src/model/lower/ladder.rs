@@ -281,13 +281,16 @@ impl Lowering {
     /// A block under a symbol: an instance of a DFB, as far as it shows. It is called in each scan of the rung.
     fn instance(&mut self, grid: &Grid<'_>, it: &Placed<'_>, name: &str, at: TextRange, run: &mut Run) {
         let mut actuals = Vec::new();
+        let is_read =
+            *run.is_read.get_or_insert_with(|| grid.placed.iter().all(|it| it.element.is_some() && !it.is_broken()));
+        let wired = if is_read { Given::Wire } else { Given::Unknown };
         for (row, &wire) in (0..).zip(&it.inputs) {
             if let Some(operand) = grid.input_actual(wire).and_then(|it| it.cell.operand()) {
                 actuals.push(self.pl7.actual(Slot::Left(row), &operand));
             } else if grid.is_fed(wire) && (row == 0 || wire != Wire::RAIL) {
                 // A block beside the rail hangs on it by its first row alone.
                 let anchor = self.pl7.b.anchor(at);
-                actuals.push(Actual { slot: Slot::Left(row), anchor, given: Given::Wire });
+                actuals.push(Actual { slot: Slot::Left(row), anchor, given: wired });
             }
         }
         for (row, &wire) in (0..).zip(&it.outputs) {
@@ -295,11 +298,9 @@ impl Lowering {
                 actuals.push(self.pl7.actual(Slot::Right(row), &operand));
             } else if grid.is_used(wire) {
                 let anchor = self.pl7.b.anchor(at);
-                actuals.push(Actual { slot: Slot::Right(row), anchor, given: Given::Wire });
+                actuals.push(Actual { slot: Slot::Right(row), anchor, given: wired });
             }
         }
-        let is_read =
-            *run.is_read.get_or_insert_with(|| grid.placed.iter().all(|it| it.element.is_some() && !it.is_broken()));
         let call = self.pl7.instance(name, at, it.range(), actuals, is_read);
         run.instances.insert(it.range(), call);
         if let Some(&before) = grid.too_close(it).and_then(|it| run.instances.get(&it.range())) {
@@ -555,6 +556,66 @@ mod tests {
             ["start of %TM1 when %M0", "start of %TM2 when %TM1.Q", "%M5 := %TM2.Q"]
         );
         assert_eq!(statements("H_LINK,BLOCK(Pump),EMPTY_CELL(7);"), ["call Pump when true"]);
+    }
+
+    #[test]
+    fn blocks_of_dfbs() {
+        let model = model(
+            "OPEN_CONTACT(%M0),H_LINK,BLOCK(Vis),H_LINK(5),COIL(%Q2.0);\n\
+             EMPTY_CELL,EFFECTIVE_PARAMETER(%MW10+1),EMPTY_CELL(3),EFFECTIVE_PARAMETER(%MW20),EMPTY_CELL(5);\n\
+             EMPTY_CELL,EFFECTIVE_PARAMETER(%MW30),EMPTY_CELL(9);",
+        );
+        let call = &model.calls[0];
+        let shown: Vec<String> = call
+            .actuals
+            .iter()
+            .map(|it| match it.given {
+                Given::Object(object) => format!("{:?} {}", it.slot, model.object(object).text),
+                other => format!("{:?} {other:?}", it.slot),
+            })
+            .collect();
+        assert_eq!(shown, [
+            "Left(0) Wire",
+            "Left(1) Expression(Integer)",
+            "Left(2) %MW30",
+            "Right(0) Wire",
+            "Right(1) %MW20"
+        ]);
+        assert!(call.full && call.too_close.is_none());
+        let modes: Vec<(Mode, &str)> =
+            model.accesses.iter().map(|it| (it.mode, model.object(it.object).text.as_str())).collect();
+        assert_eq!(modes[1..4], [(Mode::Read, "%MW10"), (Mode::InOut, "%MW30"), (Mode::Output, "%MW20")]);
+        assert_eq!(flaws(&model), []);
+    }
+
+    #[test]
+    fn what_a_block_beside_the_rail_is_given() {
+        let slots = |rows| model(rows).calls[0].actuals.iter().map(|it| it.slot).collect::<Vec<_>>();
+        assert_eq!(slots("BLOCK(Vis),EMPTY_CELL(8);\nEMPTY_CELL(11);"), [Slot::Left(0)]);
+        let flawed = model("EMPTY_CELL,BLOCK(Vis),EMPTY_CELL(7);\nEMPTY_CELL(5),EFFECTIVE_PARAMETER(%MW1),EMPTY_CELL(5);");
+        assert_eq!(flaws(&flawed), [Flaw::BlockNotFed, Flaw::FacesNoPin]);
+    }
+
+    #[test]
+    fn dfbs_in_series() {
+        let close = |rows| model(rows).calls.iter().map(|it| it.too_close).collect::<Vec<_>>();
+        assert_eq!(close("OPEN_CONTACT(%M0),BLOCK(A),H_LINK,BLOCK(B),H_LINK(2),COIL(%M1);"), [None, Some(0)]);
+        assert_eq!(close("OPEN_CONTACT(%M0),BLOCK(A),H_LINK(2),BLOCK(B),H_LINK,COIL(%M1);"), [None, None]);
+        // A branch from the line below, around a corner.
+        let branch = "OPEN_CONTACT(%M0),BLOCK(A),EMPTY_CELL,BLOCK(B),H_LINK(2),COIL(%M1);\nEMPTY_CELL(4),EMPTY_CELL(7);";
+        assert_eq!(close(branch), [None, None], "no wire joins them");
+    }
+
+    #[test]
+    fn a_call_in_a_rung_that_is_not_understood_is_not_whole() {
+        let text = "RUNG\nOPEN_CONTACT(%M0),BLOCK(Vis),H_LINK(6),COIL(%M1);\nPIN(%MW10),EMPTY_CELL(10);\nEND_RUNG";
+        let parse = crate::syntax::pl7::parse_ld(text);
+        let errors: Vec<_> = parse.errors().iter().map(|it| it.message.to_string()).collect();
+        assert_eq!(errors, ["`PIN` is no element of a rung"]);
+        let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let model = lower(parse.syntax(), text, entity);
+        assert!(!model.calls[0].full && model.calls[0].actuals.iter().all(|it| it.given == Given::Unknown));
+        assert_eq!(model.statements.len(), 2, "the coil is driven all the same");
     }
 
     #[test]
