@@ -15,6 +15,15 @@ pub struct Group<'a> {
     pub number: u32,
 }
 
+/// Of a discrete output or input in the rack, or a table of them: the position of its module and its last channel.
+pub fn discrete(object: &Object) -> Option<(u32, u32)> {
+    let (Area::InputChannels(module) | Area::OutputChannels(module)) = &object.footprint.area else { return None };
+    let last = object.footprint.end().saturating_sub(1);
+    // What lies on a bus has another form of address.
+    let position = module.parse().ok()?;
+    (object.is_fixed() && last < CHANNELS).then_some((position, last))
+}
+
 impl<'a> Group<'a> {
     /// The groups that a discrete input or output, or a table of them, lies in. None for another object, and for one
     /// that an index moves.

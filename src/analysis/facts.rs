@@ -147,6 +147,11 @@ pub struct UnitFacts {
     pub chart: Option<Box<ChartFacts>>,
     /// The parameters and variables of a DFB type.
     pub interface: Option<Box<Interface>>,
+    /// The bit under which the section runs that the unit belongs to, an index into `objects`. The section is passed by
+    /// while it is 0.
+    pub condition: Option<u32>,
+    /// Whether a comment stands in the unit. Of the text around programs, whether one is said to be that of a program.
+    pub commented: bool,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -268,7 +273,33 @@ impl UnitFacts {
             has_gaps: model.has_gaps,
             chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity))),
             interface: model.interface.clone(),
+            condition: None,
+            commented: false,
         }
+    }
+
+    /// Says under which condition the section runs. The bit is read before the unit runs.
+    pub fn run_under(&mut self, condition: &Object) {
+        let object = u32::try_from(self.objects.len()).unwrap_or(u32::MAX);
+        self.objects.push(FactObject::new(condition, false, None));
+        self.condition = Some(object);
+        let read = Use {
+            object,
+            mode: Mode::Read,
+            anchor: 0,
+            exposed: true,
+            group: u32::MAX,
+            conditional: false,
+            path: Exprs::TRUE.0,
+            skipped_by: None,
+            stale: false,
+            constant: None,
+            own: false,
+            holds: false,
+            network: 0,
+            parameter: None,
+        };
+        self.uses.insert(0, read);
     }
 }
 

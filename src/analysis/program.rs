@@ -9,6 +9,7 @@ use smol_str::SmolStr;
 use super::Site;
 use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
+use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
@@ -127,6 +128,14 @@ impl GlobalCall<'_> {
     pub fn instance_site(&self) -> Site {
         Site { unit: self.unit, anchor: self.it.instance_anchor.unwrap_or(self.it.anchor) }
     }
+}
+
+/// A section that runs while a bit is 1.
+#[derive(Debug)]
+pub struct ConditionalSection<'a> {
+    pub condition: &'a Object,
+    /// Its parts, in the order of execution.
+    pub units: Vec<u32>,
 }
 
 #[derive(Debug)]
@@ -261,18 +270,68 @@ impl<'a> ProgramIndex<'a> {
         self.reached[unit as usize] && !self.sure[unit as usize] && !self.is_startup(unit)
     }
 
-    /// A call that depends on a condition, of those that lead to a unit which does not run in each scan.
-    pub fn conditional_call(&self, unit: u32) -> Option<&GlobalCall<'a>> {
+    /// The condition of the section that a unit belongs to.
+    pub fn condition(&self, unit: u32) -> Option<&'a Object> {
+        let facts = self.units.get(unit as usize)?;
+        Some(&facts.objects.get(facts.condition? as usize)?.object)
+    }
+
+    /// Why a unit does not run in each scan, with the place: a call that depends on a condition, of those that lead to it,
+    /// or the condition of a section.
+    pub fn passed_by(&self, unit: u32) -> Option<(Site, String)> {
         let mut seen = FxHashSet::default();
         let mut at = unit;
         while seen.insert(at) {
+            if let Some(condition) = self.condition(at) {
+                return Some((Self::heading(at), format!("this section runs while `{}` is 1", condition.text)));
+            }
             let callers = self.callers[at as usize].iter().map(|&it| &self.calls[it as usize]);
             if let Some(call) = callers.clone().find(|it| it.it.conditional) {
-                return Some(call);
+                return Some((call.site(), "this call depends on a condition".to_owned()));
             }
             at = callers.map(|it| it.unit).next()?;
         }
         None
+    }
+
+    /// The sections that have a condition, in the order of execution.
+    pub fn conditional_sections(&self) -> Vec<ConditionalSection<'a>> {
+        let mut units: Vec<u32> = (0..as_index(self.units.len())).filter(|&it| self.condition(it).is_some()).collect();
+        units.sort_by_key(|&it| self.order[it as usize]);
+        let mut sections: Vec<ConditionalSection<'a>> = Vec::new();
+        let mut known = FxHashMap::default();
+        for unit in units {
+            let (Some(condition), Entity::Pl7 { task, section, .. }) = (self.condition(unit), self.entity(unit)) else {
+                continue;
+            };
+            let next = sections.len();
+            let at = *known.entry((*task, section.as_ref().map(|it| key(it)))).or_insert(next);
+            if at == next {
+                sections.push(ConditionalSection { condition, units: Vec::new() });
+            }
+            sections[at].units.push(unit);
+        }
+        sections
+    }
+
+    /// The units that run only when one of some others does: those themselves, and the subroutines that they alone call.
+    pub fn run_by(&self, units: &[u32]) -> FxHashSet<u32> {
+        let mut within: FxHashSet<u32> = units.iter().copied().collect();
+        let mut open: Vec<u32> = units.to_vec();
+        let mut callees: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        for call in self.calls.iter().filter(|it| it.it.reachable) {
+            callees.entry(call.unit).or_default().extend(call.target);
+        }
+        // A subroutine is asked again for each of its callers.
+        while let Some(at) = open.pop() {
+            for &callee in callees.get(&at).into_iter().flatten() {
+                let mut callers = self.callers[callee as usize].iter().map(|&it| self.calls[it as usize].unit);
+                if !self.is_entry(callee) && callers.all(|it| within.contains(&it)) && within.insert(callee) {
+                    open.push(callee);
+                }
+            }
+        }
+        within
     }
 
     /// Whether some run of the unit passes by all its writes of the object that one of its uses is of: number of the
@@ -527,10 +586,12 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>
     (contexts, reached)
 }
 
-/// Which units surely run. What belongs to a step of a chart runs while the step is active.
+/// Which units surely run. What belongs to a step of a chart runs while the step is active, a section that has a condition
+/// while that is 1.
 fn sure(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<bool> {
     let is_chart = |it: &Entity| matches!(it, Entity::Pl7 { part: Part::Chart(_), .. });
-    let mut sure: Vec<bool> = units.iter().map(|it| is_entry(&it.entity) && !is_chart(&it.entity)).collect();
+    let is_sure = |it: &UnitFacts| is_entry(&it.entity) && !is_chart(&it.entity) && it.condition.is_none();
+    let mut sure: Vec<bool> = units.iter().map(|it| is_sure(it)).collect();
     let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
     for call in calls.iter().filter(|it| it.it.reachable && !it.it.conditional) {
         callees[call.unit as usize].extend(call.target);
@@ -611,7 +672,7 @@ fn pl7_2_rank(entity: &Entity) -> u32 {
 /// Whether the units hold the program's cyclic entry point. The master task of PL7-2 is one text, or the parts of a Grafcet
 /// program, of which none but the chart must be there (PL72:1505-1511).
 fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
-    units.iter().any(|it| match (family, &it.entity) {
+    let is_named = units.iter().any(|it| match (family, &it.entity) {
         // A cross-reference is one of a whole project.
         _ if it.language == Language::Pl7Xref => true,
         (Family::Pl72, Entity::Pl7 { task, part, .. }) => {
@@ -620,7 +681,27 @@ fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
         (_, Entity::Pl7 { part: Part::Main, .. }) => true,
         (_, Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. }) => true,
         _ => false,
-    })
+    });
+    is_named || family == Family::Pl7 && has_chart(units)
+}
+
+/// Whether the master task of PL7 runs a chart that is all of it: the text has the initial steps, and the code before or
+/// behind the chart, or actions that drive outputs. A chart that drives none by itself was exported without its posterior
+/// processing.
+fn has_chart(units: &[&UnitFacts]) -> bool {
+    let is_initial = |it: &UnitFacts| {
+        let chart = it.chart.as_ref().filter(|chart| chart.defines);
+        chart.is_some_and(|chart| chart.steps.iter().any(|step| step.kind == StepKind::Initial))
+    };
+    let is_chart = |it: &UnitFacts| matches!(it.entity, Entity::Pl7 { task: Task::Mast, part: Part::Chart(_), .. });
+    let is_around = |it: &UnitFacts| {
+        matches!(it.entity, Entity::Pl7 { task: Task::Mast, part: Part::Preliminary | Part::Posterior, .. })
+    };
+    let drives = |it: &UnitFacts| {
+        let class = |object: u32| it.objects.get(object as usize).map(|it| it.object.class);
+        it.uses.iter().any(|it| it.mode.writes() && class(it.object) == Some(Class::Output))
+    };
+    units.iter().any(|it| is_chart(it) && is_initial(it)) && units.iter().any(|it| is_around(it) || drives(it))
 }
 
 /// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
@@ -750,6 +831,32 @@ mod tests {
         assert!(complete(&["PL7-2 SEQ"]));
         assert!(!complete(&["PL7-2 PRL", "PL7-2 POST"]));
         assert!(!complete(&["PL7-2 FAST"]));
+    }
+
+    #[test]
+    fn a_chart_that_is_all_of_the_master_task() {
+        let chart = |action: &str| {
+            format!(
+                "PROGRAM MAST 'Chart'\nPAGE 0\nINITIAL_STEP 0 AT (C 4,L 3) : END_STEP\nSTEP 1 AT (C 4,L 5) :\n\
+                 ACTION (N1,ST) : (*PHRASE*) {action} (*END_PHRASE*) END_ACTION\nEND_STEP\nEND_PAGE\nEND_PROGRAM\n"
+            )
+        };
+        let unit = |address: &str, text: &str, language| {
+            let parse = syntax::parse(language, text);
+            assert_eq!(parse.errors(), [], "{text}");
+            let entity = entity_from_address(address).unwrap_or_else(|| panic!("{address}"));
+            UnitFacts::new(&lower::lower(parse.syntax(), text, entity, language))
+        };
+        let page = |address: &str, action: &str| unit(address, &chart(action), Language::Pl7Gr7);
+        let complete = |units: &[UnitFacts]| ProgramIndex::new(Family::Pl7, units.iter().collect()).complete;
+        assert!(complete(&[page("MAST - CHART", "SET %Q2.0;")]));
+        assert!(!complete(&[page("MAST - CHART", "SET %M0;")]), "what drives the outputs is elsewhere");
+        let post = unit("MAST - POST", "", Language::Pl7St);
+        assert!(complete(&[page("MAST - CHART", "SET %M0;"), post.clone()]));
+        assert!(!complete(&[post]));
+        // An action shown alone is no chart.
+        let action = unit("MAST - CHART - PAGE 0 %X1 P1", "! SET %Q2.0;", Language::Pl7St);
+        assert!(!complete(&[action]));
     }
 
     #[test]
