@@ -17,10 +17,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         // A table must be given: F013 says so.
         let inputs = (0..).zip(interface.parameters()).filter(|it| it.1.role == Role::Input && !it.1.ty.is_array());
         for (position, item) in inputs {
-            let (given, open): (Vec<&GlobalCall<'_>>, Vec<&GlobalCall<'_>>) =
-                calls.iter().copied().partition(|call| {
-                    call.it.actuals.iter().any(|it| interface.position(it.slot) == Some(position))
-                });
+            let (given, open): (Vec<&GlobalCall<'_>>, Vec<&GlobalCall<'_>>) = calls
+                .iter()
+                .copied()
+                .partition(|call| call.it.actuals.iter().any(|it| interface.position(it.slot) == Some(position)));
             let (Some(first), [call, others @ ..]) = (given.first(), &open[..]) else { continue };
             let message =
                 format!("`{}` is called without its input `{}`, which keeps its last value", call.it.text, item.name);

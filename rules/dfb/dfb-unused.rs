@@ -31,12 +31,11 @@ fn items(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let Some(interface) = facts.interface.as_ref().filter(|_| facts.instructions > 0 && !facts.has_gaps) else {
             continue;
         };
-        let named = facts.uses.iter().filter_map(|it| {
-            match &facts.objects.get(it.object as usize)?.object.footprint.area {
+        let named =
+            facts.uses.iter().filter_map(|it| match &facts.objects.get(it.object as usize)?.object.footprint.area {
                 Area::LocalName(name) => Some(name),
                 _ => None,
-            }
-        });
+            });
         let named: FxHashSet<&SmolStr> = named.collect();
         for item in &interface.items {
             let name = key(&item.name);

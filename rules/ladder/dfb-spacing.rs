@@ -13,7 +13,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let Some(distance) = call.it.too_close.and_then(|it| call.index.checked_sub(it)) else { continue };
         let before = at.checked_sub(distance as usize).and_then(|it| cx.program.calls.get(it));
         let Some(before) = before.filter(|it| is_dfb(it) && is_dfb(call)) else { continue };
-        let message = format!("`{}` stands less than {} columns behind `{}`", call.it.text, DFB_GAP.value, before.it.text);
+        let message =
+            format!("`{}` stands less than {} columns behind `{}`", call.it.text, DFB_GAP.value, before.it.text);
         sink.report(call.site(), message).related(before.site(), "wired to this one");
     }
 }

@@ -11,10 +11,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (unit, &facts) in (0..).zip(&cx.program.units) {
         // The comment of a section may stand in the head that an exchange file gives it.
         let is_headed = before.replace(facts).is_some_and(|it| it.entity == Entity::Container && it.commented);
-        if facts.has_gaps {
-            continue;
-        }
-        if let Some(chart) = facts.chart.as_ref().filter(|it| it.defines) {
+        if let Some(chart) = facts.chart.as_ref().filter(|it| it.defines && !it.has_gaps) {
             let mut steps = chart.steps.iter().filter(|it| !it.commented).map(|it| (&it.text, it.anchor));
             if let Some((text, anchor)) = steps.next() {
                 let others = steps.map(|(text, anchor)| (Site { unit, anchor }, format!("nor has step {text}")));
@@ -23,6 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         } else if let Some(what) = kind(&facts.entity)
             && !facts.commented
             && !is_headed
+            && !facts.has_gaps
             && facts.instructions > 0
         {
             sink.report(ProgramIndex::heading(unit), format!("this {what} has no comment"));

@@ -24,8 +24,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             Some(count) => format!("the configuration gives the module at position {position} {count} outputs"),
             None => format!("the configuration has no module at position {position}"),
         };
-        sink.report(write.site(), format!("`{}` is no output of any module, and cannot serve as memory", uses.object.text))
-            .related_all(others.map(|it| (it.site(), format!("also {} here", it.mode.verb()))))
-            .note(note);
+        sink.report(
+            write.site(),
+            format!("`{}` is no output of any module, and cannot serve as memory", uses.object.text),
+        )
+        .related_all(others.map(|it| (it.site(), format!("also {} here", it.mode.verb()))))
+        .note(note);
     }
 }

@@ -866,7 +866,8 @@ mod tests {
         assert_eq!(settings.tasks()[0].io[0].0.text, "%I3.8:8");
         assert_eq!(settings.tasks()[0].period, Some(Milliseconds(20)));
         assert_eq!(settings.events()[0].trigger.as_ref().map(|it| it.0.text.as_str()), Some("%I1.0"));
-        let condition = |address| settings.condition_of(&entity_from_address(address).unwrap()).map(|it| it.text.as_str());
+        let condition =
+            |address| settings.condition_of(&entity_from_address(address).unwrap()).map(|it| it.text.as_str());
         for address in ["MAST - PUMP", "MAST - Pump - PRL", "MAST - Pump - CHART - PAGE 0 %X1 P1"] {
             assert_eq!(condition(address), Some("%M5"), "{address}");
         }

@@ -266,27 +266,18 @@ mod tests {
         ];
         let interface = Interface { anchor: 0, items };
         let name = |slot| interface.parameter(slot).map(|it| it.name.as_str());
-        assert_eq!((0..7).map(|it| name(Slot::Left(it))).collect::<Vec<_>>(), [
-            Some("i0"),
-            None,
-            None,
-            Some("x0"),
-            Some("x1"),
-            None,
-            None
-        ]);
-        assert_eq!((0..5).map(|it| name(Slot::Right(it))).collect::<Vec<_>>(), [
-            Some("q0"),
-            Some("q1"),
-            Some("q2"),
-            Some("x0"),
-            Some("x1")
-        ]);
-        assert_eq!((name(Slot::Position(0)), name(Slot::Position(2)), name(Slot::Position(5))), (
-            Some("i0"),
-            Some("x1"),
-            Some("q2")
-        ));
+        assert_eq!(
+            (0..7).map(|it| name(Slot::Left(it))).collect::<Vec<_>>(),
+            [Some("i0"), None, None, Some("x0"), Some("x1"), None, None]
+        );
+        assert_eq!(
+            (0..5).map(|it| name(Slot::Right(it))).collect::<Vec<_>>(),
+            [Some("q0"), Some("q1"), Some("q2"), Some("x0"), Some("x1")]
+        );
+        assert_eq!(
+            (name(Slot::Position(0)), name(Slot::Position(2)), name(Slot::Position(5))),
+            (Some("i0"), Some("x1"), Some("q2"))
+        );
         assert_eq!(name(Slot::Position(6)), None);
     }
 

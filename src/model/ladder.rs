@@ -8,9 +8,9 @@
 
 use rowan::TextRange;
 
-use crate::syntax::{AstNode as _, SyntaxKind};
 use crate::syntax::pl7::ast::{Cell, Expr, Rung};
 use crate::syntax::pl7::ladder_words::Element;
+use crate::syntax::{AstNode as _, SyntaxKind};
 use crate::target::pl7::{self, block};
 
 /// Index of a wire.

@@ -18,8 +18,8 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Formal, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind,
-    Pin, Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Formal, Hollow, HollowKind, Leave, LoopKind, Mode,
+    OddityKind, Pin, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};

@@ -574,13 +574,10 @@ mod tests {
                 other => format!("{:?} {other:?}", it.slot),
             })
             .collect();
-        assert_eq!(shown, [
-            "Left(0) Wire",
-            "Left(1) Expression(Integer)",
-            "Left(2) %MW30",
-            "Right(0) Wire",
-            "Right(1) %MW20"
-        ]);
+        assert_eq!(
+            shown,
+            ["Left(0) Wire", "Left(1) Expression(Integer)", "Left(2) %MW30", "Right(0) Wire", "Right(1) %MW20"]
+        );
         assert!(call.full && call.too_close.is_none());
         let modes: Vec<(Mode, &str)> =
             model.accesses.iter().map(|it| (it.mode, model.object(it.object).text.as_str())).collect();
@@ -592,7 +589,8 @@ mod tests {
     fn what_a_block_beside_the_rail_is_given() {
         let slots = |rows| model(rows).calls[0].actuals.iter().map(|it| it.slot).collect::<Vec<_>>();
         assert_eq!(slots("BLOCK(Vis),EMPTY_CELL(8);\nEMPTY_CELL(11);"), [Slot::Left(0)]);
-        let flawed = model("EMPTY_CELL,BLOCK(Vis),EMPTY_CELL(7);\nEMPTY_CELL(5),EFFECTIVE_PARAMETER(%MW1),EMPTY_CELL(5);");
+        let flawed =
+            model("EMPTY_CELL,BLOCK(Vis),EMPTY_CELL(7);\nEMPTY_CELL(5),EFFECTIVE_PARAMETER(%MW1),EMPTY_CELL(5);");
         assert_eq!(flaws(&flawed), [Flaw::BlockNotFed, Flaw::FacesNoPin]);
     }
 
@@ -602,7 +600,8 @@ mod tests {
         assert_eq!(close("OPEN_CONTACT(%M0),BLOCK(A),H_LINK,BLOCK(B),H_LINK(2),COIL(%M1);"), [None, Some(0)]);
         assert_eq!(close("OPEN_CONTACT(%M0),BLOCK(A),H_LINK(2),BLOCK(B),H_LINK,COIL(%M1);"), [None, None]);
         // A branch from the line below, around a corner.
-        let branch = "OPEN_CONTACT(%M0),BLOCK(A),EMPTY_CELL,BLOCK(B),H_LINK(2),COIL(%M1);\nEMPTY_CELL(4),EMPTY_CELL(7);";
+        let branch =
+            "OPEN_CONTACT(%M0),BLOCK(A),EMPTY_CELL,BLOCK(B),H_LINK(2),COIL(%M1);\nEMPTY_CELL(4),EMPTY_CELL(7);";
         assert_eq!(close(branch), [None, None], "no wire joins them");
     }
 

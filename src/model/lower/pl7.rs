@@ -523,7 +523,14 @@ impl Pl7 {
     }
 
     /// The call of an instance of a DFB. `full`: all that it is given is known.
-    pub(super) fn instance(&mut self, name: &str, at: TextRange, range: TextRange, actuals: Vec<Actual>, full: bool) -> u32 {
+    pub(super) fn instance(
+        &mut self,
+        name: &str,
+        at: TextRange,
+        range: TextRange,
+        actuals: Vec<Actual>,
+        full: bool,
+    ) -> u32 {
         let callee = Callee::Instance(name.to_lowercase().into());
         let call = Call { actuals, full, ..self.new_call(callee, name, at) };
         self.b.call(call, range);
