@@ -29,6 +29,11 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         Language::Pl7St => (ST_COMMENT_LENGTH, "structured text"),
         _ => return,
     };
+    // Most units hold no long comment: their tokens need no look.
+    let is_long = |piece: &str| piece.find("(*").is_some_and(|at| piece.len() - at > limit.value as usize);
+    if !cx.text.split("*)").any(is_long) {
+        return;
+    }
     let is_item = |range: TextRange| cx.model.remarks.iter().any(|it| it.range == range);
     for token in cx.parse.syntax().descendant_tokens().filter(|it| it.kind() == SyntaxKind::Comment) {
         let characters = Remark::inner(token.text()).chars().count();

@@ -12,7 +12,7 @@ const LONGEST_SHOWN: usize = 200;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let is_logical = |it: BinExpr<'_>| it.op().is_some_and(|it| it.is_logical());
-    for &(parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
+    for (parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
         let Some(expr) = BinExpr::cast(expr) else { continue };
         if !is_logical(expr) {
             if let Some(doubt) = negated_operand(expr) {

@@ -10,7 +10,8 @@ use crate::syntax::pl7::ast::{AssignStmt, BinExpr, CallExpr};
 use crate::syntax::{AstNode, Language, SyntaxKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if matches!(cx.model.language, Language::Awl(_)) {
+    let is_awl = matches!(cx.model.language, Language::Awl(_));
+    if is_awl || !cx.model.objects.iter().any(|it| it.ty.is_table()) {
         return;
     }
     for access in cx.model.accesses.iter().filter(|it| !matches!(it.mode, Mode::Drive(_))) {

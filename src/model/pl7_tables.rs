@@ -21,21 +21,20 @@ pub enum Misfit {
 
 /// The target and the value of an assignment, where one of them is a table.
 pub fn of_assignment<'t>(kinds: &Kinds<'t>, it: AssignStmt<'t>) -> Option<(Type, Type)> {
-    let value = it.value()?;
-    let (a, b) = (kinds.type_of(it.target()?)?, shape(kinds, value)?);
-    let meets = match (a.is_table(), b.is_table()) {
-        (true, _) => true,
-        // A word takes the table itself, and not what an operation makes of it.
-        (false, true) => matches!(value, Expr::Object(_) | Expr::Paren(_)),
-        (false, false) => false,
-    };
-    meets.then_some((a, b))
+    let (a, value) = (kinds.type_of(it.target()?)?, it.value()?);
+    // A word takes the table itself, and not what an operation makes of it.
+    if !a.is_table() && !matches!(value, Expr::Object(_) | Expr::Paren(_)) {
+        return None;
+    }
+    let b = shape(kinds, value)?;
+    (a.is_table() || b.is_table()).then_some((a, b))
 }
 
 /// Two tables that an operator joins.
 pub fn of_operation<'t>(kinds: &Kinds<'t>, it: BinExpr<'t>) -> Option<(Type, Type)> {
-    let (a, b) = (kinds.type_of(it.lhs()?)?, kinds.type_of(it.rhs()?)?);
-    (a.is_table() && b.is_table()).then_some((a, b))
+    let a = kinds.type_of(it.lhs()?).filter(|it| it.is_table())?;
+    let b = kinds.type_of(it.rhs()?).filter(|it| it.is_table())?;
+    Some((a, b))
 }
 
 /// Two tables that a function takes element by element.

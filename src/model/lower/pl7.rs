@@ -63,7 +63,7 @@ fn heading(node: SyntaxNode<'_>) -> TextRange {
 
 impl Pl7 {
     pub(super) fn new(root: SyntaxNode<'_>, entity: Entity, language: Language) -> Self {
-        let b = Builder::new(entity, language, heading(root));
+        let b = Builder::new(entity, language, heading(root), root.text_range().len());
         let mut pl7 = Self { b, items: dfb::Items::default() };
         dfb::enter(&mut pl7, root);
         pl7
@@ -86,9 +86,9 @@ impl Pl7 {
     pub(super) fn object_ref(&mut self, it: &ast::ObjectRef) -> (ObjectId, TextRange) {
         let range = it.syntax().text_range();
         let address = it.address();
-        let index = it.index();
+        let index = if it.syntax().is_leaf() { None } else { it.index() };
         if index.is_none()
-            && let Some(&id) = self.b.model.addresses.get(&address)
+            && let Some(&id) = self.b.model.addresses.get(&*address)
         {
             return (id, range);
         }
@@ -108,7 +108,7 @@ impl Pl7 {
             Err(error) => return (self.address_error(error, range, &address), range),
         };
         if is_direct {
-            self.b.model.addresses.insert(address, id);
+            self.b.model.addresses.insert(address.into(), id);
         }
         (id, range)
     }
