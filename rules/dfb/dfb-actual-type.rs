@@ -64,10 +64,9 @@ fn of_value(ty: ItemType, kind: Kind, is_constant: bool) -> Option<String> {
         (ItemType::Text(_), kind) => kind == Kind::Text,
         (ItemType::Array(..), _) => false,
     };
-    let what = if is_constant { "the constant" } else { "an expression" };
-    let whose = if is_constant { "that is" } else { "whose value is" };
+    let what = if is_constant { "a constant that is" } else { "an expression whose value is" };
     (!fits).then(|| match (ty.is_bit(), kind) {
         (true, Kind::Bit) => "an expression, where only an object or a constant can stand".to_owned(),
-        _ => format!("{what} {whose} {}", kind.describe()).replace("the constant that is", "a constant that is"),
+        _ => format!("{what} {}", kind.describe()),
     })
 }

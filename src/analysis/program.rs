@@ -320,6 +320,12 @@ impl<'a> ProgramIndex<'a> {
         Some(&facts.objects.get(facts.condition? as usize)?.object)
     }
 
+    /// Whether two units belong to sections that one bit lets run, so that both run or none.
+    pub fn run_together(&self, a: u32, b: u32) -> bool {
+        let place = |unit: u32| self.condition(unit).filter(|it| it.is_fixed()).map(|it| &it.footprint);
+        place(a).is_some_and(|it| place(b) == Some(it))
+    }
+
     /// Why a unit does not run in each scan, with the place: a call that depends on a condition, of those that lead to it,
     /// or the condition of a section.
     pub fn passed_by(&self, unit: u32) -> Option<(Site, String)> {
@@ -366,6 +372,10 @@ impl<'a> ProgramIndex<'a> {
         for call in self.calls.iter().filter(|it| it.it.reachable) {
             callees.entry(call.unit).or_default().extend(call.target);
         }
+        callees.values_mut().for_each(|it| {
+            it.sort_unstable();
+            it.dedup();
+        });
         // A subroutine is asked again for each of its callers.
         while let Some(at) = open.pop() {
             for &callee in callees.get(&at).into_iter().flatten() {
