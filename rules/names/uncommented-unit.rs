@@ -5,12 +5,17 @@ use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::ProgramIndex;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::{BlockKind, Entity, Part};
+use crate::syntax::Language;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut before: Option<&UnitFacts> = None;
     for (unit, &facts) in (0..).zip(&cx.program.units) {
         // The comment of a section may stand in the head that an exchange file gives it.
         let is_headed = before.replace(facts).is_some_and(|it| it.entity == Entity::Container && it.commented);
+        // A cross-reference shows no comments.
+        if facts.language == Language::Pl7Xref {
+            continue;
+        }
         if let Some(chart) = facts.chart.as_ref().filter(|it| it.defines && !it.has_gaps) {
             let mut steps = chart.steps.iter().filter(|it| !it.commented).map(|it| (&it.text, it.anchor));
             if let Some((text, anchor)) = steps.next() {
