@@ -464,7 +464,7 @@ impl<'t> Grid<'t> {
                 }
             }
             if it.is_actual() {
-                if it.inputs.is_empty() && it.outputs.is_empty() {
+                if it.inputs.is_empty() && it.outputs.is_empty() && !it.is_broken() {
                     flaws.push((Flaw::FacesNoPin, it.range(), None));
                 }
                 continue;
