@@ -8,13 +8,14 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    if !program.complete || program.writes_indirectly() || program.has_unresolved(Mode::writes) {
+    if !program.complete || program.has_unresolved(Mode::writes) {
         return;
     }
     for section in program.conditional_sections() {
         let condition = section.condition;
         // The system drives the other bits.
-        if !matches!(condition.class, Class::Memory | Class::Output) || !condition.is_fixed() {
+        let is_driven = matches!(condition.class, Class::Memory | Class::Output) && condition.is_fixed();
+        if !is_driven || program.writes_indirectly(&condition.footprint.area) {
             continue;
         }
         let Some(&first) = section.units.first() else { continue };

@@ -233,7 +233,7 @@ impl UnitFacts {
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
                     network: statement.map_or(0, |it| it.network),
-                    parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
+                    parameter: access.parameter.clone().zip(called).map(|(formal, call)| (call, formal)),
                 }
             })
             .collect();
@@ -393,9 +393,8 @@ fn by_object(model: &UnitModel, wanted: impl Fn(&Access) -> bool) -> Vec<(u32, &
 
 /// Group of each access: equal for writes of one object of which at most one takes effect in a scan.
 fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
-    // Of an actual, the interface of what is called will tell whether it is an output.
-    let may_assign = |it: &Access| it.mode.assigns() || it.mode == Mode::InOut && it.parameter.is_some();
-    let drives = |it: &Access| may_assign(it) || it.mode == Mode::Store || matches!(it.mode, Mode::Drive(_));
+    // What a call does to an actual parameter shows in the program alone.
+    let drives = |it: &Access| it.mode.assigns() || matches!(it.mode, Mode::Store | Mode::InOut | Mode::Drive(_));
     let writes = by_object(model, drives);
     let mut groups: Vec<u32> = (0..u32::try_from(model.accesses.len()).unwrap_or(u32::MAX)).collect();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
@@ -425,7 +424,7 @@ fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
 
 fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
     let stores = |it: Mode| matches!(it, Mode::Set | Mode::Reset | Mode::EdgeMemory);
-    let writes = by_object(model, |it| stores(it.mode) || it.mode.assigns());
+    let writes = by_object(model, |it| stores(it.mode) || it.mode.assigns() || it.mode == Mode::InOut);
     let mut pairs = Vec::new();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
         for (at, second) in list.iter().take(MAX_COMPARED).enumerate() {
