@@ -39,6 +39,8 @@ pub struct FactStep {
     pub text: SmolStr,
     pub kind: StepKind,
     pub anchor: u32,
+    /// Whether a comment stands in it.
+    pub commented: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -118,7 +120,13 @@ impl ChartFacts {
             steps: chart
                 .steps
                 .iter()
-                .map(|it| FactStep { name: it.name.clone(), text: it.text.clone(), kind: it.kind, anchor: it.anchor })
+                .map(|it| FactStep {
+                    name: it.name.clone(),
+                    text: it.text.clone(),
+                    kind: it.kind,
+                    anchor: it.anchor,
+                    commented: it.commented,
+                })
                 .collect(),
             transitions: chart
                 .transitions
