@@ -83,6 +83,38 @@ pub struct Component {
     pub initial: Vec<Node>,
 }
 
+/// A connected chart with what it reaches.
+#[derive(Debug)]
+pub struct Part {
+    pub component: Component,
+    /// From the initial situation.
+    pub own: Reached,
+    /// From there, and from what the program sets.
+    pub all: Reached,
+}
+
+/// The charts of a section, and what they reach.
+pub struct Study<'p, 'a> {
+    pub net: Net<'p, 'a>,
+    pub parts: Vec<Part>,
+}
+
+impl<'p, 'a> Study<'p, 'a> {
+    /// Of each section with charts.
+    pub fn all(program: &'p ProgramIndex<'a>) -> Vec<Self> {
+        let study = |net: Net<'p, 'a>| {
+            let part = |component: Component| {
+                let own = net.reach(&component);
+                let all = net.reach_all(&component);
+                Part { component, own, all }
+            };
+            let parts = net.components().into_iter().map(part).collect();
+            Self { net, parts }
+        };
+        Net::all(program).into_iter().map(study).collect()
+    }
+}
+
 /// A set of steps of a component, by their places in it.
 pub type Situation = Box<[u64]>;
 
@@ -105,7 +137,8 @@ impl<'p, 'a> Net<'p, 'a> {
     pub fn all(program: &'p ProgramIndex<'a>) -> Vec<Self> {
         let mut sections: Vec<Vec<&'p Chart<'a>>> = Vec::new();
         for chart in program.charts() {
-            let same = |it: &&mut Vec<&Chart<'_>>| it.iter().any(|it| it.task == chart.task && it.section == chart.section);
+            let same =
+                |it: &&mut Vec<&Chart<'_>>| it.iter().any(|it| it.task == chart.task && it.section == chart.section);
             match sections.iter_mut().find(same) {
                 Some(section) => section.push(chart),
                 None => sections.push(vec![chart]),
@@ -403,17 +436,24 @@ impl<'p, 'a> Net<'p, 'a> {
         format!("{first} -> ... -> {last}")
     }
 
-    /// Whether two crossings can happen at once in some situation in which both are valid, with the values that do it.
-    pub fn both(&self, component: &Component, reached: &Reached, a: usize, b: usize) -> Answer {
-        let (Guarded::By(one), Guarded::By(other)) = (self.crossings[a].guard, self.crossings[b].guard) else {
-            return Answer::Never;
-        };
+    /// Whether receptivities can have the values wanted of them in some situation in which all their transitions are valid,
+    /// with the values of objects that do it. Never where no situation is such, or one of them is not known.
+    pub fn can_be(&self, component: &Component, reached: &Reached, wanted: &[(usize, bool)]) -> Answer {
+        let guards: Option<Vec<(ExprId, bool)>> = wanted
+            .iter()
+            .map(|&(it, value)| match self.crossings[it].guard {
+                Guarded::By(guard) => Some((guard, value)),
+                Guarded::Never | Guarded::Unknown => None,
+            })
+            .collect();
+        let Some(guards) = guards else { return Answer::Never };
+        let crossings: Vec<usize> = wanted.iter().map(|it| it.0).collect();
         let walker = Walker::new(self, component);
-        let asked = walker.asked(&[a, b]);
+        let asked = walker.asked(&crossings);
         let mut seen: FxHashSet<Vec<bool>> = FxHashSet::default();
         let mut answer = Answer::Never;
         for situation in &reached.situations {
-            if ![a, b].iter().all(|&it| walker.is_valid(situation, it)) {
+            if !crossings.iter().all(|&it| walker.is_valid(situation, it)) {
                 continue;
             }
             let values: Vec<bool> = asked.iter().map(|it| has(situation, it.0)).collect();
@@ -421,14 +461,100 @@ impl<'p, 'a> Net<'p, 'a> {
                 continue;
             }
             let steps = asked.iter().zip(values).map(|(it, value)| (it.1, value));
-            let wanted: Vec<(ExprId, bool)> = [(one, true), (other, true)].into_iter().chain(steps).collect();
-            match self.space().solve(&wanted) {
+            let all: Vec<(ExprId, bool)> = guards.iter().copied().chain(steps).collect();
+            match self.space().solve(&all) {
                 Answer::Never => {}
                 Answer::NotDecided => answer = Answer::NotDecided,
                 found @ Answer::Possible(_) => return found,
             }
         }
-        answer
+        if reached.is_partial && answer.is_never() { Answer::NotDecided } else { answer }
+    }
+
+    /// Whether a transition is valid in some situation.
+    pub fn is_ever_valid(&self, component: &Component, reached: &Reached, crossing: usize) -> bool {
+        let walker = Walker::new(self, component);
+        reached.situations.iter().any(|it| walker.is_valid(it, crossing))
+    }
+
+    /// Whether a receptivity says something of an object.
+    pub fn has_objects(&self, crossing: usize) -> bool {
+        !self.supports[crossing].is_empty()
+    }
+
+    /// Steps that a situation does not hold and a transition waits for, and those that it holds.
+    pub fn waits(&self, component: &Component, situation: &Situation, crossing: usize) -> (Vec<Node>, Vec<Node>) {
+        let active: FxHashSet<Node> = self.active(component, situation).collect();
+        self.crossings[crossing].from.iter().partition(|it| !active.contains(it))
+    }
+
+    /// Steps that come after some, by crossings other than those of `without`, but not after the step `end`.
+    fn after_steps(&self, starts: &[Node], without: &[usize], end: Option<Node>) -> FxHashSet<Node> {
+        let mut seen: FxHashSet<Node> = starts.iter().copied().collect();
+        let mut stack: Vec<Node> = starts.to_vec();
+        while let Some(node) = stack.pop() {
+            if Some(node) == end {
+                continue;
+            }
+            for (at, it) in self.crossings.iter().enumerate() {
+                if it.from.contains(&node) && !without.contains(&at) {
+                    stack.extend(it.to.iter().copied().filter(|it| seen.insert(*it)));
+                }
+            }
+        }
+        seen
+    }
+
+    /// Of a step that is activated while it is active: the transition that opens parallel branches, two of which come
+    /// together at the step by transitions of their own, as alternative ones do.
+    pub fn opened_in_parallel(&self, component: &Component, step: Node) -> Option<(usize, [usize; 2])> {
+        let into: Vec<usize> =
+            component.crossings.iter().copied().filter(|&it| self.crossings[it].to.contains(&step)).collect();
+        for &opening in component.crossings.iter().filter(|&&it| self.crossings[it].to.len() > 1) {
+            let branches: Vec<FxHashSet<Node>> =
+                self.crossings[opening].to.iter().map(|&it| self.after_steps(&[it], &[opening], Some(step))).collect();
+            let leads = |branch: &FxHashSet<Node>, crossing: usize| {
+                self.crossings[crossing].from.iter().all(|it| branch.contains(it) && *it != step)
+            };
+            for (at, &a) in into.iter().enumerate() {
+                for &b in &into[at + 1..] {
+                    let alone = |x: usize, y: usize| branches.iter().any(|it| leads(it, x) && !leads(it, y));
+                    if alone(a, b) && alone(b, a) {
+                        return Some((opening, [a, b]));
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Of a transition that waits for steps on several branches: the step whose alternative branches they are.
+    pub fn opened_as_alternatives(&self, component: &Component, crossing: usize) -> Option<Node> {
+        let from = &self.crossings[crossing].from;
+        component.nodes.iter().copied().find(|&step| {
+            let out: Vec<usize> = component
+                .crossings
+                .iter()
+                .copied()
+                .filter(|&it| it != crossing && self.crossings[it].from.contains(&step))
+                .collect();
+            let branches: Vec<FxHashSet<Node>> =
+                out.iter().map(|&it| self.after_steps(&self.crossings[it].to, &[crossing, it], Some(step))).collect();
+            // Each branch leads to one of the steps, and none to all of them.
+            let found = |it: &FxHashSet<Node>| from.iter().filter(|step| it.contains(step)).count();
+            let led: Vec<&FxHashSet<Node>> = branches.iter().filter(|it| found(it) > 0).collect();
+            led.len() > 1
+                && led.iter().all(|it| found(it) < from.len())
+                && from.iter().all(|step| led.iter().any(|it| it.contains(step)))
+        })
+    }
+
+    /// Whether steps lead back to themselves.
+    pub fn has_loop(&self, component: &Component) -> bool {
+        component.crossings.iter().any(|&it| {
+            let after = self.after_steps(&self.crossings[it].to, &[], None);
+            self.crossings[it].from.iter().any(|it| after.contains(it))
+        })
     }
 }
 
@@ -622,7 +748,8 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
     /// The situation after some crossings (rules 3 to 5). Tells of each step that is activated while it stays active.
     fn after(&self, situation: &[u64], crossed: &[usize], mut lost: impl FnMut(usize, Node)) -> Situation {
         let mut after: Situation = situation.into();
-        let places = |nodes: &[Node]| -> Vec<usize> { nodes.iter().filter_map(|it| self.place.get(it).copied()).collect() };
+        let places =
+            |nodes: &[Node]| -> Vec<usize> { nodes.iter().filter_map(|it| self.place.get(it).copied()).collect() };
         for &it in crossed {
             for at in places(&self.net.crossings[it].from) {
                 after[at / 64] &= !(1 << (at % 64));
