@@ -24,7 +24,7 @@ const DIALECTS: [Dialect; 8] = [
 ];
 
 fn check(bytes: &[u8], dialect: Dialect, encoding: Option<Encoding>) -> Outcome {
-    let hint = FileHint { path: Some(Path::new("hostile.awl")), explicit: true, dialect };
+    let hint = FileHint { path: Some(Path::new("hostile.awl")), explicit: true, dialect, family: None };
     let (source, detected) = detect::load(hint, bytes, encoding);
     let spans = split::split(&source.text, detected, &SplitHint::default());
     let mut at = 0;

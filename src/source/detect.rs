@@ -9,7 +9,8 @@ use super::decode::{Encoding, SourceText, decode, looks_binary};
 use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
 };
-use crate::model::entity::BlockKind;
+use crate::model::entity::{BlockKind, Family};
+use crate::model::object;
 use crate::syntax::pl7::ladder_words;
 
 use super::scan::{Comments, Lines};
@@ -107,8 +108,10 @@ pub enum Detected {
     Exchange,
     /// PL7 text without blocks; where no heading says the language, it is this one.
     Pasted(Pl7Text),
-    /// PL7-2 text with headings, or what the user says is PL7-2.
+    /// PL7-2 text without blocks.
     Pl72,
+    /// PL7-2 code in the exchange form of PL7.
+    Pl72Exchange,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
     /// A PL7 project: its text is the listing of its tables.
@@ -128,12 +131,15 @@ pub struct FileHint<'p> {
     /// Named by the user rather than found in a folder.
     pub explicit: bool,
     pub dialect: Dialect,
+    /// The family of the controller that is configured.
+    pub family: Option<Family>,
 }
 
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
     pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST, LD and GR7";
-    pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
+    pub const PL7_2: &str = "PL7-2 code in a file with PL7 code";
+    pub const PL7_2_LANGUAGE: &str = "PL7-2 language other than ladder and Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
     pub const APPLICATION: &str = "PL7 application (FEF)";
@@ -287,8 +293,22 @@ fn is_binary_mesh(bytes: &[u8]) -> bool {
 /// What a text is.
 pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     let tally = Tally::of(text);
+    match (detect_form(hint, text, &tally), hint.dialect) {
+        (Detected::Exchange, Dialect::Pl72) => Detected::Pl72Exchange,
+        (Detected::Exchange, Dialect::Auto) if tally.is_pl7_2(hint.family) => Detected::Pl72Exchange,
+        (Detected::Pasted(Pl7Text::Ld | Pl7Text::Gr7 | Pl7Text::Sfc), Dialect::Auto)
+            if tally.headings() == 0 && tally.is_pl7_2(hint.family) =>
+        {
+            Detected::Pl72
+        }
+        (detected, _) => detected,
+    }
+}
+
+/// What a text is, but for whose ladder and charts it has.
+fn detect_form(hint: FileHint<'_>, text: &str, tally: &Tally) -> Detected {
     match hint.dialect {
-        Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
+        Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, tally),
         Dialect::Step7 => Detected::Step7,
         Dialect::Pl7
         | Dialect::Pl7Il
@@ -400,6 +420,8 @@ struct Tally {
     st: u32,
     /// Lines with something that only PL7 has: `%MW10`, `%L5:`, `!` before a sentence.
     pl7: u32,
+    /// Lines with something that only PL7-2 has: `I0,05`, `T0,D`, `W1 -> W2`.
+    pl7_2: u32,
     /// Headings of pasted PL7 text, by language.
     headings_il: u32,
     headings_st: u32,
@@ -494,6 +516,7 @@ impl Tally {
         let first = word(code).0.to_ascii_uppercase();
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
+        self.pl7_2 += u32::from(!is_pl7 && has_pl7_2_object(line));
         self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
             Some(Pl7Text::Il) => self.il += 1,
@@ -535,6 +558,11 @@ impl Tally {
             _ if !is_pl7 && is_prose(code) => self.prose += 1,
             _ => {}
         }
+    }
+
+    /// Whether ladder and charts are PL7-2's: their operands say so, or where they say nothing, the configuration.
+    fn is_pl7_2(&self, configured: Option<Family>) -> bool {
+        self.pl7 == 0 && (self.pl7_2 > 0 || configured == Some(Family::Pl72))
     }
 
     fn is_exchange(&self) -> bool {
@@ -595,7 +623,7 @@ impl Tally {
         let structure = if self.st > 0 { self.scl } else { 0 };
         let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
         let is_chart = self.chart > 0 && self.chart + self.chart_words > 2 && self.graph == 0;
-        if is_chart && charted && (self.pages > 1 || self.pl7 > 0 && self.iec == 0) {
+        if is_chart && charted && (self.pages > 1 || self.pl7 + self.pl7_2 > 0 && self.iec == 0) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
         if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
@@ -659,6 +687,18 @@ fn has_pl7_object(line: &str) -> bool {
             && number.starts_with(|c: char| c.is_ascii_digit() || upper && c == '(')
     })
 }
+
+/// Whether a line names an object, or transfers a value, as PL7-2 alone does: `I0,05`, `T0,D`, `W5,A`, `W1 -> W2`. No symbol
+/// has a comma.
+fn has_pl7_2_object(line: &str) -> bool {
+    let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
+    let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
+    let is_transfer = || line.contains("->") && line.contains("END_BLOCK") && !line.contains(":=");
+    words.any(|it| object::pl72::parse(it).is_ok_and(|it| it.object.class != object::Class::Fault)) || is_transfer()
+}
+
+/// Characters of the longest address with a comma.
+const LONGEST_PL7_2: usize = "COM15,3,F".len();
 
 /// What follows `%L10:`.
 fn strip_pl7_label(line: &str) -> &str {

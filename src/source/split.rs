@@ -12,11 +12,11 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::detect::{Detected, Pl7Text, pl7_text, unsupported};
 use super::heading::{
-    HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_address, pl7_heading,
+    Heading, HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_2_entity, pl7_address, pl7_heading,
     strip_prefix_ignore_case, word,
 };
 use super::scan::{Comments, Lines};
-use crate::model::entity::{Entity, Part, Task};
+use crate::model::entity::{Entity, Family, Part, Task};
 use crate::syntax::{Language, Mnemonics};
 
 /// A piece of a file that is parsed and checked by itself.
@@ -48,7 +48,8 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
     match detected {
         Detected::Step7 => step7(&mut units, hint),
         Detected::Pasted(default) => pasted(&mut units, default, hint),
-        Detected::Exchange => exchange(&mut units),
+        Detected::Exchange => exchange(&mut units, Family::Pl7),
+        Detected::Pl72Exchange => exchange(&mut units, Family::Pl72),
         Detected::Stx => project(&mut units),
         Detected::Pl72 => pl7_2(&mut units, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
@@ -73,7 +74,7 @@ pub fn resplit(
 ) -> Option<Vec<UnitSpan>> {
     let is_own = |it: &UnitSpan| match detected {
         Detected::Step7 => matches!(it.entity, Entity::Block { .. }),
-        Detected::Pasted(_) => true,
+        Detected::Pasted(_) | Detected::Pl72 => true,
         _ => false,
     };
     let changed = common_start(old.as_bytes(), new.as_bytes());
@@ -194,7 +195,7 @@ impl Units<'_> {
 
     /// Whether the last draft is of a chart.
     fn in_chart(&self) -> bool {
-        self.drafts.last().is_some_and(|it| it.language == Some(Language::Pl7Gr7))
+        self.drafts.last().is_some_and(|it| matches!(it.language, Some(Language::Pl7Gr7 | Language::Pl72Gr7)))
     }
 
     fn push(&mut self, start: usize, draft: Draft) {
@@ -415,29 +416,56 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
     }
 }
 
-/// PL7-2: headings, and code before the first one, all in languages that are not read.
+/// The language of PL7-2 that text without a heading is in.
+fn pl7_2_language(text: Pl7Text) -> Language {
+    match text {
+        Pl7Text::Gr7 => Language::Pl72Gr7,
+        Pl7Text::Sfc => Language::Pl72Sfc,
+        Pl7Text::Ld | Pl7Text::Il | Pl7Text::St => Language::Pl72Ld,
+    }
+}
+
+/// PL7-2: headings, and code before the first one.
 fn pl7_2(units: &mut Units<'_>, hint: &SplitHint) {
-    let draft =
-        |entity| Draft { unsupported: Some(unsupported::PL7_2), ..Draft::new(entity, Some(Language::Exchange)) };
-    let main = || hint.entity.clone().unwrap_or(Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main });
+    let unnamed = |text: &str| {
+        let language = pl7_2_language(pl7_text(text));
+        let part = if language.is_chart() { Part::Chart("SEQ".into()) } else { Part::Main };
+        let main = Entity::Pl7 { task: Task::Mast, section: None, part };
+        Draft::new(hint.entity.clone().unwrap_or(main), Some(language))
+    };
+    let named = |heading: Heading| {
+        let (language, unsupported) = match heading.language {
+            HeadingLanguage::Ladder => (Language::Pl72Ld, None),
+            HeadingLanguage::Grafcet => (Language::Pl72Gr7, None),
+            HeadingLanguage::Il | HeadingLanguage::St => (Language::Exchange, Some(unsupported::PL7_2_LANGUAGE)),
+        };
+        Draft { unsupported, ..Draft::new(heading.entity, Some(language)) }
+    };
+    let mut pages = 0;
     for line in Lines::new(units.text, Comments::Pl7) {
         if line.code.is_empty() {
             continue;
         }
         if let Some(heading) = pl7_heading(line.code) {
-            units.push(units.code_end, draft(heading.entity));
+            units.push(units.code_end, named(heading));
+            pages = 0;
         } else if units.drafts.is_empty() {
-            units.push(0, draft(main()));
+            units.push(0, unnamed(units.text));
+        }
+        if units.in_chart()
+            && let Some(page) = page_line(line.code)
+        {
+            units.page(page, &mut pages);
         }
         units.code_end = line.end;
     }
     if units.drafts.is_empty() {
-        units.push(0, draft(main()));
+        units.push(0, unnamed(units.text));
     }
 }
 
-/// A PL7 exchange file: each block in brackets, and the program in each source unit.
-fn exchange(units: &mut Units<'_>) {
+/// An exchange file: each block in brackets, and the program in each source unit.
+fn exchange(units: &mut Units<'_>, family: Family) {
     #[derive(PartialEq)]
     enum State {
         /// Between blocks, or in one without a program.
@@ -474,7 +502,7 @@ fn exchange(units: &mut Units<'_>) {
         match state {
             State::Keys => {
                 if let Some(program) = keys.read(code) {
-                    let draft = keys.program(program);
+                    let draft = if family == Family::Pl72 { keys.pl7_2_program(program) } else { keys.program(program) };
                     if let Some(header) = units.drafts.last_mut() {
                         header.label = Some(format_smolstr!("[SOURCE_UNIT] {}", draft.name()));
                     }
@@ -647,6 +675,21 @@ impl<'t> SourceUnit<'t> {
             _ => (Some(Language::Exchange), Some(unsupported::OTHER_LANGUAGE)),
         };
         Draft { unsupported, ..Draft::new(entity, language) }
+    }
+
+    /// As [`Self::program`], of PL7-2, which has no sections.
+    fn pl7_2_program(&self, line: &str) -> Draft {
+        let repeated = strip_prefix_ignore_case(line, "PROGRAM").unwrap_or_default();
+        let entity = self.address.into_iter().chain([repeated]).find_map(|it| pl7_address(it).or(pl7_2_entity(it)));
+        let entity = entity.unwrap_or(Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main });
+        let language = self.language.unwrap_or_default().to_ascii_uppercase();
+        let (language, unsupported) = match language.as_str() {
+            "LD" => (Language::Pl72Ld, None),
+            "IL" | "ST" => (Language::Exchange, Some(unsupported::PL7_2_LANGUAGE)),
+            "" if !matches!(entity, Entity::Pl7 { part: Part::Chart(_), .. }) => (Language::Pl72Ld, None),
+            _ => (Language::Pl72Gr7, None),
+        };
+        Draft { unsupported, ..Draft::new(entity, Some(language)) }
     }
 
     /// Names the section after the unit, unless the unit's name only repeats its address: `MAST_SR1`, `MAST_Chart`.
@@ -1111,7 +1154,7 @@ mod tests {
         #[test]
         fn units_tile_any_text(pieces in prop::collection::vec(PIECES, 0..24)) {
             let text = pieces.concat();
-            let hint = FileHint { dialect: Dialect::Auto, explicit: true, path: None };
+            let hint = FileHint { explicit: true, ..FileHint::default() };
             for detected in [
                 detect(hint, &text),
                 Detected::Step7,

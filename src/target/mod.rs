@@ -240,8 +240,12 @@ impl Target {
 
     /// Lines of a rung, the most that any controller has when it is unknown.
     pub fn ladder_lines(&self) -> Option<Limit> {
-        let series = self.processor().map_or(pl7::Series::Premium, |it| it.series);
-        (self.family == Family::Pl7).then(|| series.ladder_lines())
+        let series = || self.processor().map_or(pl7::Series::Premium, |it| it.series);
+        match self.family {
+            Family::Pl7 => Some(series().ladder_lines()),
+            Family::Pl72 => Some(pl72::LADDER_LINES),
+            Family::Step7 => None,
+        }
     }
 
     /// What a chart may have at most.

@@ -381,7 +381,8 @@ impl<'t> Lowering<'t> {
 
     fn back_targets(&self, code: SyntaxNode<'_>) -> FxHashSet<SmolStr> {
         let text = self.text.get(std::ops::Range::<usize>::from(code.text_range())).unwrap_or_default();
-        pl7::back_targets(code, text)
+        let language = self.pl7.as_ref().map_or(Language::Pl7Gr7, |it| it.b.model.language);
+        pl7::back_targets(code, text, language)
     }
 
     /// Starts a piece of code that runs under a condition.

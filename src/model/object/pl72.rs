@@ -32,7 +32,8 @@ pub struct Address {
     pub index: Option<Object>,
 }
 
-/// Reads an address without blanks, in either case: `I0,05`, `W5,A`, `T0,P`, `B5[10]`, `W0[60]`, `W5(W10)`.
+/// Reads an address without blanks, in either case: `I0,05`, `W5,A`, `T0,P`, `B5[10]`, `W0[60]`, `W5(W10)`. The percent
+/// sign of PL7 may stand before it, except where PL7 means something else by the rest: `%M5` is a bit there.
 ///
 /// # Errors
 /// [`AddressErrorKind::Malformed`] with the nearest valid form where there is one; [`AddressErrorKind::OutOfRange`] for
@@ -256,6 +257,9 @@ type Indexed<'a> = (Place, Option<(&'a str, Place)>);
 
 /// Reads an address in upper case. The index comes with its text.
 fn read(text: &str) -> Result<Indexed<'_>, AddressError> {
+    let is_bit_of_pl7 = !text.contains(',')
+        && matches!(text.as_bytes(), [b'%', b'M' | b'S', digit, ..] if digit.is_ascii_digit());
+    let text = if is_bit_of_pl7 { text } else { text.strip_prefix('%').unwrap_or(text) };
     if !text.is_ascii() {
         return Err(malformed("an address has neither accents nor other special characters (PL72:253-310)"));
     }
@@ -976,6 +980,17 @@ mod tests {
             assert_eq!(suggest(text), error.suggestion, "{text}");
         }
         assert_eq!((suggest("W5"), suggest("W5(W1)")), (None, None));
+    }
+
+    #[test]
+    fn a_percent_sign_may_stand_before_an_address() {
+        for text in ["B5", "I0,05", "W5(W10)", "X3", "X3,V", "T0,D", "SY21", "T0", "M2,R", "S1,0"] {
+            let (bare, signed) = (object(text), object(&format!("%{text}")));
+            assert_eq!((bare.footprint, bare.rights), (signed.footprint, signed.rights), "{text}");
+        }
+        // A bit of PL7, no monostable.
+        assert_eq!(error("%M5").suggestion.as_deref(), Some("B5"));
+        assert_eq!(error("%S1").suggestion.as_deref(), Some("SY1"));
     }
 
     #[test]

@@ -11,11 +11,11 @@ mod release;
 mod system;
 
 pub use block::{
-    BLOCKS, Block, BlockKind, CLOCK_DAYS, CLOCK_WORDS, COUNTER_VALUES, COUPLER_ADDRESSES, COUPLER_POSITIONS, DAYS,
+    BLOCKS, Block, BlockKind, CLOCK_DAYS, CLOCK_WORDS, CLOCKS, COUNTER_VALUES, COUPLER_ADDRESSES, COUPLER_POSITIONS, DAYS,
     DRUM_ORDER_BITS, DRUM_STEP, DRUM_STEPS, DRUM_TIME, FAST_TIMER_MAX_US, FAST_TIMER_MIN_US, MINUTES, PRESETS, Pin,
     REGISTER_LENGTH, SIMPLE_TEXTS, STOP_CODES, SimpleText, TEXT_BYTES, TEXT_ERRORS, TEXT_KINDS, TEXT_LENGTH_SIMPLE,
     TEXT_NUMBER_BYTES, TEXT_PARTNERS, TEXT_PARTNERS_PL7_2, TEXT_STATIONS, TEXT_TABLE_START, TIME_BASES_MS, TextError,
-    TextKind, UNI_TELWAY_ADDRESSES, UNI_TELWAY_REQUEST,
+    TextKind, UNI_TELWAY_ADDRESSES, UNI_TELWAY_REQUEST, of_address,
 };
 pub use channel::{
     Channels, EXTENSIONS_17, Misfit, Modules, RUN_STOP_INPUT, SECURITY_OUTPUT, UNITS_17, Unit17, UnitKind,
@@ -25,7 +25,7 @@ pub use cost::{
     SystemTask, TimeRange, Triggered,
 };
 pub use operation::{
-    ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARISONS, OPERATIONS, Operand, OperandRange,
+    ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARE_COLUMNS, COMPARISONS, OPERATE_COLUMNS, OPERATIONS, Operand, OperandRange,
     Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
 };
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
@@ -45,6 +45,10 @@ pub const COMMENT_LENGTH: Limit = Limit::new(15, "PL72:601");
 /// Lines of a network, and contacts in a line of its test zone.
 pub const LADDER_LINES: Limit = Limit::new(4, "PL72:606");
 pub const LADDER_CONTACTS: Limit = Limit::new(9, "PL72:606");
+/// Columns of a network: those of contacts, then that of coils.
+pub const LADDER_COLUMNS: Limit = Limit::new(LADDER_CONTACTS.value + 1, "PL72:606-607");
+/// Columns of a block whose size the document does not tell: those of all others.
+pub const BLOCK_COLUMNS: Limit = Limit::new(2, "PL72:662");
 /// Coils of a network, one a line.
 pub const LADDER_COILS: Limit = Limit::new(4, "PL72:607");
 
