@@ -1121,6 +1121,8 @@ mod tests {
         assert_eq!(forced(Dialect::Pl7Il, PL7_ST), IL);
         assert_eq!(forced(Dialect::Pl7St, "[SOURCE_UNIT]"), Detected::Exchange);
         assert_eq!(forced(Dialect::Pl72, "RUNG"), Detected::Pl72);
+        assert_eq!(forced(Dialect::Pl72, "[SOURCE_UNIT]\nPROGRAM\n[EOF]\n"), Detected::Pl72Exchange);
+        assert_eq!(forced(Dialect::Pl7Ld, "RUNG\nOPEN_CONTACT(I0,05);\nEND_RUNG"), Detected::Pasted(Pl7Text::Ld));
         let explicit = FileHint { explicit: true, ..hint("a.xyz") };
         assert_eq!(detect(explicit, "= A 4.0"), STEP7);
         assert_eq!(detect(explicit, "%M0 := 1;"), ST);
@@ -1154,5 +1156,39 @@ mod tests {
         ) {
             let _ = detect(hint(&path), &text);
         }
+    }
+
+    /// Ladder and charts say by their operands whose they are; where they do not, the configured controller does.
+    #[test]
+    fn pl7_2_by_its_operands() {
+        let rung = |operand: &str| format!("RUNG\nOPEN_CONTACT({operand}),H_LINK(8),COIL(B1);\nEND_RUNG\n");
+        let with = |family, text: &str| detect(FileHint { family, ..hint("a.txt") }, text);
+        for operand in ["I0,05", "T0,D", "W5,A", "X3,V", "i1,b", "C0,E"] {
+            assert_eq!(with(None, &rung(operand)), Detected::Pl72, "{operand}");
+        }
+        let ladder = Detected::Pasted(Pl7Text::Ld);
+        for operand in ["%M0", "%I1.0", "Pump", "B5", "X3", "I1.0"] {
+            assert_eq!(with(None, &rung(operand)), ladder, "{operand}");
+        }
+        for operand in ["B5", "X3", "Pump"] {
+            assert_eq!(with(Some(Family::Pl72), &rung(operand)), Detected::Pl72, "{operand}");
+            assert_eq!(with(Some(Family::Pl7), &rung(operand)), ladder, "{operand}");
+        }
+        // An operand of PL7 is never one of PL7-2.
+        assert_eq!(with(Some(Family::Pl72), &rung("%I1.0")), ladder);
+        assert_eq!(with(None, &format!("{}{}", rung("I0,05"), rung("%I1.0"))), ladder);
+        let operate = "RUNG\nH_LINK(7),OPERATE 127 -> W10 END_BLOCK;\nEND_RUNG\n";
+        assert_eq!(with(None, operate), Detected::Pl72);
+        let chart =
+            "INITIAL_STEP X0 : END_STEP\nSTEP X1 : END_STEP\nTRANSITION FROM X0 TO X1 := I0,05; END_TRANSITION\n";
+        assert_eq!(with(None, chart), Detected::Pl72);
+        let exchange =
+            |operand: &str| format!("[SOURCE_UNIT]\nLANGUAGE = LD\nPROGRAM\n{}END_PROGRAM\n[EOF]\n", rung(operand));
+        assert_eq!(with(None, &exchange("I0,05")), Detected::Pl72Exchange);
+        assert_eq!(with(None, &exchange("B5")), Detected::Exchange);
+        assert_eq!(with(Some(Family::Pl72), &exchange("B5")), Detected::Pl72Exchange);
+        assert_eq!(with(Some(Family::Pl72), &exchange("%M5")), Detected::Exchange);
+        // Lists and text are PL7's, whatever is configured.
+        assert_eq!(with(Some(Family::Pl72), "! %M1 := %M2;\n! %M3 := %M4;\n! %M5 := %M6;\n"), ST);
     }
 }

@@ -12,8 +12,8 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::detect::{Detected, Pl7Text, pl7_text, unsupported};
 use super::heading::{
-    Heading, HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_2_entity, pl7_address, pl7_heading,
-    strip_prefix_ignore_case, word,
+    Heading, HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_2_entity, pl7_address,
+    pl7_heading, strip_prefix_ignore_case, word,
 };
 use super::scan::{Comments, Lines};
 use crate::model::entity::{Entity, Family, Part, Task};
@@ -502,7 +502,8 @@ fn exchange(units: &mut Units<'_>, family: Family) {
         match state {
             State::Keys => {
                 if let Some(program) = keys.read(code) {
-                    let draft = if family == Family::Pl72 { keys.pl7_2_program(program) } else { keys.program(program) };
+                    let draft =
+                        if family == Family::Pl72 { keys.pl7_2_program(program) } else { keys.program(program) };
                     if let Some(header) = units.drafts.last_mut() {
                         header.label = Some(format_smolstr!("[SOURCE_UNIT] {}", draft.name()));
                     }
@@ -680,7 +681,10 @@ impl<'t> SourceUnit<'t> {
     /// As [`Self::program`], of PL7-2, which has no sections.
     fn pl7_2_program(&self, line: &str) -> Draft {
         let repeated = strip_prefix_ignore_case(line, "PROGRAM").unwrap_or_default();
-        let entity = self.address.into_iter().chain([repeated]).find_map(|it| pl7_address(it).or(pl7_2_entity(it)));
+        let entity = self.address.into_iter().chain([repeated]).find_map(|it| {
+            let module = strip_prefix_ignore_case(it, "PL7-2").unwrap_or(it);
+            pl7_2_entity(module).or_else(|| pl7_address(module.trim_start()))
+        });
         let entity = entity.unwrap_or(Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main });
         let language = self.language.unwrap_or_default().to_ascii_uppercase();
         let (language, unsupported) = match language.as_str() {
@@ -754,7 +758,7 @@ fn next_key(line: &str) -> Option<Key> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::detect::{Dialect, FileHint, detect};
+    use super::super::detect::{FileHint, detect};
     use super::*;
     use crate::model::entity::{BlockKind, BlockName};
 
@@ -905,21 +909,48 @@ mod tests {
 
     #[test]
     fn pl7_2_programs() {
+        let (ld, gr7, sfc) = (Language::Pl72Ld, Language::Pl72Gr7, Language::Pl72Sfc);
         let units = check(
             Detected::Pl72,
             "(* A *)\nLD : PL7-2 - PRL\nRUNG\nLD : PL7-2 - SEQ - X3\n\nRUNG\nLD : PL7-2 - SEQ - X3 --> X4\n\
-             LD : PL7-2 - POST\nLD : PL7-2 - FAST\n",
+             LD : PL7-2 - POST\nGR7 : PL7-2 - SEQ\nPAGE 1\nEND_PAGE\nPAGE 2\nLD : PL7-2 - FAST\nST : PL7-2 - MAST\n",
             &[
-                ("MAST - PRL", KEYS, "(* A *)\nLD : PL7-2 - PRL\nRUNG\n"),
-                ("MAST - SEQ - X3", KEYS, "LD : PL7-2 - SEQ - X3\n\nRUNG\n"),
-                ("MAST - SEQ - X3 --> X4", KEYS, "LD : PL7-2 - SEQ - X3 --> X4\n"),
-                ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
-                ("FAST - MAIN", KEYS, "LD : PL7-2 - FAST\n"),
+                ("MAST - PRL", ld, "(* A *)\nLD : PL7-2 - PRL\nRUNG\n"),
+                ("MAST - SEQ - X3", ld, "LD : PL7-2 - SEQ - X3\n\nRUNG\n"),
+                ("MAST - SEQ - X3 --> X4", ld, "LD : PL7-2 - SEQ - X3 --> X4\n"),
+                ("MAST - POST", ld, "LD : PL7-2 - POST\n"),
+                ("MAST - SEQ - PAGE 1", gr7, "GR7 : PL7-2 - SEQ\nPAGE 1\nEND_PAGE\n"),
+                ("MAST - SEQ - PAGE 2", gr7, "PAGE 2\n"),
+                ("FAST - MAIN", ld, "LD : PL7-2 - FAST\n"),
+                ("MAST - MAIN", KEYS, "ST : PL7-2 - MAST\n"),
             ],
         );
-        assert_eq!(unsupported(&units), [Some(super::unsupported::PL7_2); 5]);
-        let units = check(Detected::Pl72, "RUNG\nEND_RUNG\n", &[("MAST - MAIN", KEYS, "RUNG\nEND_RUNG\n")]);
-        assert_eq!(unsupported(&units), [Some(super::unsupported::PL7_2)]);
+        let expected: Vec<_> = units.iter().map(|it| it.unsupported.is_some()).collect();
+        assert_eq!(expected, [false, false, false, false, false, false, false, true]);
+        check(Detected::Pl72, "RUNG\nEND_RUNG\n", &[("MAST - MAIN", ld, "RUNG\nEND_RUNG\n")]);
+        let chart = "INITIAL_STEP X0 : END_STEP\n";
+        check(Detected::Pl72, chart, &[("MAST - SEQ", sfc, chart)]);
+    }
+
+    #[test]
+    fn pl7_2_exchange_files() {
+        let unit = |language: &str, address: &str| {
+            format!(
+                "[SOURCE_UNIT]\nNAME = 'POST'\nLANGUAGE = {language}\nBODY =\nADDRESS = {address}\nPROGRAM\nRUNG\nEND_PROGRAM\n"
+            )
+        };
+        let language = |detected, text: &str| {
+            let units = split(text, detected, &SplitHint::default());
+            units.last().map(|it| (it.entity.to_string(), it.language, it.unsupported.is_some()))
+        };
+        let of = |text: &str| language(Detected::Pl72Exchange, text);
+        assert_eq!(of(&unit("LD", "MAST POST")), Some(("MAST - POST".to_owned(), Language::Pl72Ld, false)));
+        assert_eq!(of(&unit("LD", "PRL")), Some(("MAST - PRL".to_owned(), Language::Pl72Ld, false)));
+        assert_eq!(of(&unit("LD", "PL7-2 FAST")), Some(("FAST - MAIN".to_owned(), Language::Pl72Ld, false)));
+        assert_eq!(of(&unit("OTHERS", "SEQ")), Some(("MAST - SEQ".to_owned(), Language::Pl72Gr7, false)));
+        assert_eq!(of(&unit("IL", "POST")), Some(("MAST - POST".to_owned(), KEYS, true)));
+        let pl7 = language(Detected::Exchange, &unit("LD", "MAST MAIN"));
+        assert_eq!(pl7.map(|it| it.1), Some(LD));
     }
 
     #[test]

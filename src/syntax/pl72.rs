@@ -130,8 +130,8 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 
 /// Letters before the number of an object: of PL7-2 (PL72:253-310), then those that PL7 gives to the same objects.
 const OBJECT_LETTERS: [&str; 38] = [
-    "I", "O", "B", "SY", "X", "S", "W", "CW", "SW", "COM", "IW", "OW", "T", "C", "FC", "DT", "DTP", "M", "R", "D", "TXT",
-    "E", "A", "Q", "K", "MW", "KW", "QW", "MB", "KB", "ID", "QD", "MD", "KD", "TM", "MN", "DR", "XM",
+    "I", "O", "B", "SY", "X", "S", "W", "CW", "SW", "COM", "IW", "OW", "T", "C", "FC", "DT", "DTP", "M", "R", "D",
+    "TXT", "E", "A", "Q", "K", "MW", "KW", "QW", "MB", "KB", "ID", "QD", "MD", "KD", "TM", "MN", "DR", "XM",
 ];
 
 fn is_object(word: &str) -> bool {
@@ -150,7 +150,9 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     let rest = lexer.remainder().as_bytes();
     let mut end = 0;
     for _ in 0..2 {
-        let Some((separator @ (b',' | b'.' | b':'), tail)) = rest.get(end..).and_then(<[u8]>::split_first) else { break };
+        let Some((separator @ (b',' | b'.' | b':'), tail)) = rest.get(end..).and_then(<[u8]>::split_first) else {
+            break;
+        };
         // The steps of `FROM (X1,X2)` are two.
         let is_pl7 = *separator != b',';
         let length = tail.iter().take_while(|it| it.is_ascii_alphanumeric() || **it == b'_').count();

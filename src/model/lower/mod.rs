@@ -26,7 +26,9 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Exchange => exchange::lower(root, text, entity),
         Language::Pl7Xref => xref::lower(root, entity),
         Language::Pl7Ld | Language::Pl72Ld => ladder::lower(root, text, entity, language),
-        Language::Pl7Gr7 | Language::Sfc | Language::Pl72Gr7 | Language::Pl72Sfc => chart::lower(root, text, entity, language),
+        Language::Pl7Gr7 | Language::Sfc | Language::Pl72Gr7 | Language::Pl72Sfc => {
+            chart::lower(root, text, entity, language)
+        }
     }
 }
 

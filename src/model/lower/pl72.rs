@@ -264,7 +264,7 @@ impl Pl7 {
     /// Notes an operand that is no word, nor a value where one may stand.
     fn takes(&mut self, it: &Source, or_value: bool, what: &str, source: &str) {
         let is_word = matches!(it.form, Form::Word | Form::Indexed | Form::Unknown);
-        if !is_word && !(or_value && it.form == Form::Value) {
+        if !(is_word || or_value && it.form == Form::Value) {
             let wanted = if or_value { "a word or a value" } else { "a word" };
             let message = format!("{what} is {wanted} ({source}), and `{}` is {}", it.text, it.form.describe());
             self.b.oddity(OddityKind::OperandType(message), it.range, it.text.clone());
@@ -353,12 +353,7 @@ mod tests {
                  OPEN_CONTACT(X3),CLOSED_CONTACT(SY21),EMPTY_CELL(7),SET_COIL(B12);\n\
                  OPEN_CONTACT(T0,D),H_LINK(8),SAVE_COIL(B13);\nOPEN_CONTACT(%B1),H_LINK(8),JUMP_COIL(L20);"
             ),
-            [
-                "O1,03 := ((I0,05 | (X3 & !SY21)) & !W5,A)",
-                "set B12 when false",
-                "B13 := T0,D",
-                "jump when %B1"
-            ]
+            ["O1,03 := ((I0,05 | (X3 & !SY21)) & !W5,A)", "set B12 when false", "B13 := T0,D", "jump when %B1"]
         );
     }
 
@@ -434,13 +429,7 @@ mod tests {
                 "OPEN_CONTACT(B0),BLOCK(T0),H_LINK(6),COIL(B1);\nEMPTY_CELL(9),EMPTY_CELL;\n\
                  OPEN_CONTACT(B2),BLOCK(C0),H_LINK(6),COIL(B3);\nOPEN_CONTACT(B4),EMPTY_CELL(9);"
             ),
-            [
-                "start of T0 when B0",
-                "reset of C0 when B2",
-                "preset of C0 when B4",
-                "B1 := T0,D",
-                "B3 := C0,E"
-            ]
+            ["start of T0 when B0", "reset of C0 when B2", "preset of C0 when B4", "B1 := T0,D", "B3 := C0,E"]
         );
         let exposed = |rows: &str, name: &str| -> Vec<bool> {
             let it = model(rows);

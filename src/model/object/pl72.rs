@@ -257,8 +257,8 @@ type Indexed<'a> = (Place, Option<(&'a str, Place)>);
 
 /// Reads an address in upper case. The index comes with its text.
 fn read(text: &str) -> Result<Indexed<'_>, AddressError> {
-    let is_bit_of_pl7 = !text.contains(',')
-        && matches!(text.as_bytes(), [b'%', b'M' | b'S', digit, ..] if digit.is_ascii_digit());
+    let is_bit_of_pl7 =
+        !text.contains(',') && matches!(text.as_bytes(), [b'%', b'M' | b'S', digit, ..] if digit.is_ascii_digit());
     let text = if is_bit_of_pl7 { text } else { text.strip_prefix('%').unwrap_or(text) };
     if !text.is_ascii() {
         return Err(malformed("an address has neither accents nor other special characters (PL72:253-310)"));
@@ -563,11 +563,12 @@ fn nearest(upper: &str) -> Option<String> {
 fn slips(text: &str) -> Vec<String> {
     // PL72:1639 prints `I0.00`, PL72:884-896 blanks after the comma.
     let compact = text.replace([' ', '\t', '\u{a0}'], "").replace(['.', ';'], ",");
-    let mut out = vec![compact.trim_end_matches([',', ':']).to_owned()];
+    let mut out = Vec::new();
     let text = compact.as_str();
     if let Some(pl7) = text.strip_prefix('%') {
         out.extend(from_pl7(pl7));
     }
+    out.push(compact.trim_end_matches([',', ':']).trim_start_matches('%').to_owned());
     let end = text.bytes().position(|it| !it.is_ascii_uppercase()).unwrap_or(text.len());
     let (letters, tail) = text.split_at(end);
     // Letters of PL7 and of the other vendor.

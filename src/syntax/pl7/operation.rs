@@ -4,8 +4,8 @@
 //! without parentheses.
 
 use SyntaxKind::{
-    Arrow, AssignStmt, BinExpr, CallExpr, Comma, Eq, ExprStmt, Ge, Gt, Ident, LBrack, LParen, Le, Lt, Minus, Ne, Number,
-    ObjectAddress, Percent, Plus, RBrack, RParen, Slash, Star, UnaryExpr,
+    Arrow, AssignStmt, BinExpr, CallExpr, Comma, Eq, ExprStmt, Ge, Gt, Ident, LBrack, LParen, Le, Lt, Minus, Ne,
+    Number, ObjectAddress, Percent, Plus, RBrack, RParen, Slash, Star, UnaryExpr,
 };
 
 use super::expr::Node;
