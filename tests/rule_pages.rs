@@ -127,7 +127,7 @@ fn every_dialect_has_its_examples() {
         let examples = examples(rule);
         for dialect in rule.dialects {
             let wanted: &[Dialect] = match *dialect {
-                "all" => &[Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St],
+                "all" => &[Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St, Dialect::Pl72],
                 "pl7" => &[Dialect::Pl7Il, Dialect::Pl7St],
                 "s7" => &[Dialect::Step7],
                 "il" => &[Dialect::Pl7Il],

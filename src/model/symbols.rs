@@ -40,6 +40,17 @@ pub enum RemarkKind {
     Symbol,
     /// A section or subroutine, in the header of its source unit.
     Module,
+    /// A network of PL7-2.
+    Network,
+}
+
+impl Remark {
+    /// The remark that a comment with its delimiters is.
+    pub fn new(kind: RemarkKind, text: &str, range: TextRange) -> Self {
+        let inner = text.strip_prefix("(*").unwrap_or(text);
+        let inner = inner.strip_suffix("*)").unwrap_or(inner).trim();
+        Self { kind, characters: u32::try_from(inner.chars().count()).unwrap_or(u32::MAX), range }
+    }
 }
 
 /// What makes two spellings the same symbol.

@@ -18,10 +18,11 @@ use crate::model::entity::{Entity, Part};
 use crate::model::expr::{self, ExprId, Exprs, ObjectId};
 use crate::model::ladder::{BlockShape, Flaw, Grid, Layout, Placed, Wire};
 use crate::model::object::{self, Class, Object};
+use crate::model::symbols::{Remark, RemarkKind};
 use crate::model::unit::{Call, Callee, Leave, Mode, OddityKind, Pin, StatementKind};
 use crate::syntax::pl7::ast::{self, Expr, Stmt};
 use crate::syntax::pl7::ladder_words::Element;
-use crate::syntax::{AstNode as _, Language, SyntaxNode};
+use crate::syntax::{AstNode as _, Language, SyntaxKind, SyntaxNode};
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Language) -> UnitModel {
     let is_transition = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
@@ -89,6 +90,13 @@ impl Lowering {
         self.pl7.b.next_network();
         if let Some(label) = rung.label() {
             self.pl7.label(&label);
+        }
+        if self.layout == Layout::Pl72 {
+            let comment = rung.syntax().tokens().find(|it| it.kind() == SyntaxKind::Comment);
+            // What speaks to the linter is no text of the program.
+            if let Some(it) = comment.filter(|it| !it.text().contains("plclint:")) {
+                self.pl7.b.model.remarks.push(Remark::new(RemarkKind::Network, it.text(), it.text_range()));
+            }
         }
         let grid = Grid::new(rung, self.layout);
         for (flaw, range, related) in grid.flaws() {

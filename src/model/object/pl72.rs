@@ -62,6 +62,16 @@ pub fn suggest(name: &str) -> Option<String> {
     if read(&upper).is_ok() { None } else { nearest(&upper) }
 }
 
+/// Whether an object is the preset of a function block: `T0,P`.
+pub fn is_preset(object: &Object) -> bool {
+    let block = match object.footprint.area {
+        Area::Block(symbol, _) => BLOCKS.iter().find(|it| it.symbol == symbol),
+        _ => None,
+    };
+    let is_own = |it: &Item| it.start == object.footprint.start && it.class == object.class && it.name == "P";
+    block.is_some_and(|it| it.items.iter().any(is_own))
+}
+
 /// Where a bit or word of a module is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Channel {

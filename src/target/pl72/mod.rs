@@ -31,7 +31,7 @@ pub use operation::{
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
 
-use super::{Limit, Range};
+use super::{Counted, Limit, Numbered, Range};
 
 /// Watchdog of the master task, which is not periodic, in milliseconds (also PL72:534).
 pub const WATCHDOG_MS: Limit = Limit::new(150, "PL72:477");
@@ -236,6 +236,32 @@ pub static OBJECT_COUNTS: &[ObjectCount] = &[
     count(Kind::OutputWordBit, [32 * 16, 0, 32 * 16], "PL72:308-310"),
 ];
 
+const fn numbered(what: Counted, prefix: &'static str, plural: &'static str) -> Numbered {
+    Numbered { what, key: "", prefix, plural }
+}
+
+/// What the tables count, and programs number from 0. No configuration changes how many there are.
+pub static NUMBERED: &[Numbered] = &[
+    numbered(Counted::Bits, "B", "internal bits"),
+    numbered(Counted::Words, "W", "internal words"),
+    numbered(Counted::Constants, "CW", "constant words"),
+    numbered(Counted::SystemBits, "SY", "system bits"),
+    numbered(Counted::SystemWords, "SW", "system words"),
+    numbered(Counted::Steps, "X", "steps"),
+    numbered(Counted::Timers, "T", "timers"),
+    numbered(Counted::Counters, "C", "counters"),
+    numbered(Counted::FastCounters, "FC", "fast counters"),
+    numbered(Counted::Monostables, "M", "monostables"),
+    numbered(Counted::Registers, "R", "registers"),
+    numbered(Counted::Drums, "D", "drum controllers"),
+    numbered(Counted::Texts, "TXT", "text blocks"),
+];
+
+/// What the block of a symbol is counted as: `T`, `TXT`.
+pub fn block_of_symbol(symbol: &str) -> Option<Counted> {
+    NUMBERED.iter().find(|it| it.what.is_block() && it.prefix == symbol).map(|it| it.what)
+}
+
 /// A controller as a configuration names it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Controller {
@@ -333,6 +359,20 @@ impl Model {
             let count = row.map(|it| self.series().map(|series| it.counts[series.index()]).max().unwrap_or(0));
             Limit::new(count.unwrap_or(0), row.map_or("", |it| it.source))
         })
+    }
+
+    /// How many there are of what programs number.
+    pub fn numbered(&self, what: Counted) -> Option<Limit> {
+        let kind = match what {
+            Counted::Bits => Kind::Bit,
+            Counted::Words => Kind::Word,
+            Counted::Constants => Kind::Constant,
+            Counted::SystemBits => Kind::SystemBit,
+            Counted::SystemWords => Kind::SystemWord,
+            Counted::Steps => Kind::Step,
+            _ => return self.block_count(NUMBERED.iter().find(|it| it.what == what)?.prefix),
+        };
+        Some(self.count(kind))
     }
 
     /// How many blocks there are of a symbol (`T`, `C`, `M`, `R`, `D`, `FC`, `TXT`).
