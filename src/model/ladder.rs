@@ -179,7 +179,7 @@ impl Placed<'_> {
     }
 
     /// The column behind its last one, from 0.
-    fn end(&self) -> u32 {
+    pub fn end(&self) -> u32 {
         self.column + self.width
     }
 }

@@ -72,6 +72,11 @@ impl Pl7 {
         self.b.model.language.is_pl7_2()
     }
 
+    /// A direct object, as an address without index names it.
+    pub(super) fn address(&self, text: &str) -> Result<Object, object::AddressError> {
+        if self.is_pl7_2() { object::pl72::parse(text).map(|it| it.object) } else { object::pl7::parse(text) }
+    }
+
     pub(super) fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
         self.b.oddity(OddityKind::Address(error), range, text);
         self.b.object(Object {
