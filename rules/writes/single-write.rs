@@ -12,14 +12,14 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let is_bit = match uses.object.class {
             Class::Output | Class::Memory => uses.object.ty == Type::Bool,
             // Only bits are assigned conditions.
-            Class::Symbol => uses.uses.iter().any(|it| matches!(it.mode, Mode::Assign | Mode::AssignNot)),
+            Class::Symbol => uses.has_mode(|it| matches!(it, Mode::Assign | Mode::AssignNot)),
             _ => false,
         };
         if !is_bit {
             continue;
         }
         // Mixed driving is W002's affair, a bit with an edge E002's, and a scratch value is nobody else's.
-        let others = uses.uses.iter().any(|it| matches!(it.mode, Mode::Set | Mode::Reset) || it.mode.is_edge());
+        let others = uses.has_mode(|it| matches!(it, Mode::Set | Mode::Reset) || it.is_edge());
         if others || !uses.object.is_fixed() || uses.is_scratch() {
             continue;
         }

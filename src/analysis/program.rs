@@ -13,7 +13,7 @@ use crate::model::dfb::Interface;
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
-use crate::model::unit::{Callee, Mode, Section};
+use crate::model::unit::{Callee, Mode, Pin, Section};
 use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
@@ -76,6 +76,43 @@ impl GlobalUse<'_> {
     }
 }
 
+/// Which modes some uses have; those of all pins count as one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Modes(u16);
+
+impl Modes {
+    const ALL: [Mode; 13] = [
+        Mode::Read,
+        Mode::Rising,
+        Mode::Falling,
+        Mode::Assign,
+        Mode::AssignNot,
+        Mode::Set,
+        Mode::Reset,
+        Mode::Store,
+        Mode::Write,
+        Mode::EdgeMemory,
+        Mode::Drive(Pin::Whole),
+        Mode::InOut,
+        Mode::Output,
+    ];
+
+    fn bit(mode: Mode) -> u16 {
+        let is_same = |it: &Mode| *it == mode || matches!((it, mode), (Mode::Drive(_), Mode::Drive(_)));
+        Self::ALL.iter().position(is_same).map_or(0, |it| 1 << it)
+    }
+
+    fn insert(&mut self, mode: Mode) {
+        self.0 |= Self::bit(mode);
+    }
+
+    /// Whether one of the modes may be wanted; which pin is driven is not known here.
+    fn may_have(self, wanted: impl Fn(Mode) -> bool) -> bool {
+        let is_wanted = |it: &Mode| matches!(it, Mode::Drive(_)) || wanted(*it);
+        Self::ALL.iter().any(|it| self.0 & Self::bit(*it) != 0 && is_wanted(it))
+    }
+}
+
 /// An object with all its uses, in execution order.
 #[derive(Debug)]
 pub struct ObjectUses<'a> {
@@ -83,19 +120,26 @@ pub struct ObjectUses<'a> {
     /// Some unit computes with its value.
     pub number: bool,
     pub uses: Vec<GlobalUse<'a>>,
+    modes: Modes,
 }
 
 impl<'a> ObjectUses<'a> {
+    /// Most rules want modes that most objects have not: this costs next to nothing then.
     pub fn with_mode(&self, wanted: impl Fn(Mode) -> bool) -> impl Iterator<Item = &GlobalUse<'a>> {
-        self.uses.iter().filter(move |it| wanted(it.mode))
+        let uses = if self.modes.may_have(&wanted) { self.uses.as_slice() } else { &[] };
+        uses.iter().filter(move |it| wanted(it.mode))
+    }
+
+    pub fn has_mode(&self, wanted: impl Fn(Mode) -> bool) -> bool {
+        self.with_mode(wanted).next().is_some()
     }
 
     pub fn is_written(&self) -> bool {
-        self.uses.iter().any(|it| it.mode.writes() || matches!(it.mode, Mode::Drive(_)))
+        self.has_mode(|it| it.writes() || matches!(it, Mode::Drive(_)))
     }
 
     pub fn is_read(&self) -> bool {
-        self.uses.iter().any(|it| it.mode.reads())
+        self.has_mode(Mode::reads)
     }
 
     /// Whether every unit that uses the object writes it before it reads it: a scratch value that does not outlive the
@@ -103,7 +147,7 @@ impl<'a> ObjectUses<'a> {
     pub fn is_scratch(&self) -> bool {
         matches!(self.object.class, Class::Memory | Class::Symbol)
             && self.is_read()
-            && self.uses.iter().all(|it| !it.mode.is_edge() && it.mode != Mode::EdgeMemory)
+            && !self.has_mode(|it| it.is_edge() || it == Mode::EdgeMemory)
             && self.with_mode(Mode::reads).all(|it| !it.it.exposed)
     }
 }
@@ -663,13 +707,16 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
         object: &fact.object,
         number,
         uses: Vec::with_capacity(count),
+        modes: Modes::default(),
     };
     let mut objects: Vec<ObjectUses<'a>> = firsts.iter().zip(numbers).zip(counts).map(object).collect();
     for unit in by_rank {
         for it in &units[unit as usize].uses {
             if let Some(Some(id)) = locals[unit as usize].get(it.object as usize) {
                 let mode = actual_mode(units, &targets, unit, it);
-                objects[*id as usize].uses.push(GlobalUse { unit, mode, it });
+                let object = &mut objects[*id as usize];
+                object.uses.push(GlobalUse { unit, mode, it });
+                object.modes.insert(mode);
             }
         }
     }
@@ -682,8 +729,8 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
     objects.sort_by_cached_key(|it| {
         let place = &it.object.footprint;
         let rank = ranks.get(&place.area).copied().unwrap_or(u32::MAX);
-        let address = u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits);
-        (address, it.object.ty, it.object.indexed)
+        // Those of one place stay in the order in which the program comes across them.
+        u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits)
     });
     objects
 }

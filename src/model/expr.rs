@@ -3,7 +3,11 @@
 //! A read carries the *version* of what it reads. Two reads of one object with equal versions give the same value,
 //! because nothing wrote the object between them.
 
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher as _;
+
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::FxBuildHasher;
 use smol_str::SmolStr;
 
 /// Index of an object in the unit's table.
@@ -118,20 +122,21 @@ pub enum Expr {
 }
 
 /// The expressions of one unit.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct Exprs {
     nodes: Vec<Expr>,
-    ids: FxHashMap<Expr, ExprId>,
+    ids: HashTable<ExprId>,
     opaque: u32,
 }
 
 impl Default for Exprs {
     fn default() -> Self {
-        let mut exprs = Self { nodes: Vec::new(), ids: FxHashMap::default(), opaque: 0 };
-        exprs.intern(Expr::Bool(false));
-        exprs.intern(Expr::Bool(true));
-        exprs
+        Self::with_capacity(0)
     }
+}
+
+fn hash(expr: &Expr) -> u64 {
+    FxBuildHasher.hash_one(expr)
 }
 
 impl Exprs {
@@ -150,14 +155,32 @@ impl Exprs {
         self.nodes.is_empty()
     }
 
+    /// Room for so many expressions.
+    pub fn with_capacity(capacity: usize) -> Self {
+        let capacity = capacity.max(2);
+        let (nodes, ids) = (Vec::with_capacity(capacity), HashTable::with_capacity(capacity));
+        let mut exprs = Self { nodes, ids, opaque: 0 };
+        exprs.intern(Expr::Bool(false));
+        exprs.intern(Expr::Bool(true));
+        exprs
+    }
+
     fn intern(&mut self, expr: Expr) -> ExprId {
-        if let Some(&id) = self.ids.get(&expr) {
-            return id;
+        let nodes = &self.nodes;
+        let id = ExprId(u32::try_from(nodes.len()).unwrap_or(u32::MAX));
+        let entry = self.ids.entry(hash(&expr), |it| nodes[it.0 as usize] == expr, |it| hash(&nodes[it.0 as usize]));
+        match entry {
+            Entry::Occupied(found) => *found.get(),
+            Entry::Vacant(entry) => {
+                entry.insert(id);
+                self.nodes.push(expr);
+                id
+            }
         }
-        let id = ExprId(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
-        self.nodes.push(expr.clone());
-        self.ids.insert(expr, id);
-        id
+    }
+
+    fn find(&self, expr: &Expr) -> Option<ExprId> {
+        self.ids.find(hash(expr), |it| self.nodes[it.0 as usize] == *expr).copied()
     }
 
     pub fn bool(value: bool) -> ExprId {
@@ -192,7 +215,7 @@ impl Exprs {
 
     /// The plain read of an object's value, where the unit has one.
     pub fn find_read(&self, object: ObjectId, version: u32) -> Option<ExprId> {
-        self.ids.get(&Expr::Read { object, version }).copied()
+        self.find(&Expr::Read { object, version })
     }
 
     pub fn not(&mut self, a: ExprId) -> ExprId {
@@ -220,8 +243,8 @@ impl Exprs {
         match *self.get(a) {
             Expr::Bool(value) => Some(Self::bool(!value)),
             Expr::Not(inner) => Some(inner),
-            Expr::Compare(op, x, y) => self.ids.get(&Expr::Compare(op.negated(), x, y)).copied(),
-            _ => self.ids.get(&Expr::Not(a)).copied(),
+            Expr::Compare(op, x, y) => self.find(&Expr::Compare(op.negated(), x, y)),
+            _ => self.find(&Expr::Not(a)),
         }
     }
 

@@ -478,7 +478,7 @@ pub enum Section {
     Temp,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct UnitModel {
     pub entity: Entity,
     pub language: Language,

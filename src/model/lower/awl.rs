@@ -30,7 +30,7 @@ use crate::target;
 pub fn lower(root: SyntaxNode<'_>, entity: Entity, mnemonics: Mnemonics) -> UnitModel {
     let heading = heading(root);
     let mut machine = Machine {
-        b: Builder::new(entity, Language::Awl(mnemonics), heading),
+        b: Builder::new(entity, Language::Awl(mnemonics), heading, root.text_range().len()),
         mnemonics,
         rlo: Rlo { state: RloState::FromCaller, value: Exprs::TRUE },
         fresh: true,

@@ -4,7 +4,7 @@
 //! deactivation, those at activation, and the continuous ones (PL7:4565-4569). Between two pieces of code those of other
 //! pages may run, so that no value is known from one to the next.
 
-use rowan::TextRange;
+use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -51,7 +51,9 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: 
     let Lowering { pl7, mut chart, .. } = lowering;
     chart.actions.sort_by_key(|it| it.anchors.start);
     // The lowering gives it back after each piece of code.
-    let Some(pl7) = pl7 else { return Builder::new(Entity::Container, language, TextRange::default()).finish() };
+    let Some(pl7) = pl7 else {
+        return Builder::new(Entity::Container, language, TextRange::default(), TextSize::new(0)).finish();
+    };
     let mut model = pl7.b.finish();
     model.chart = Some(Box::new(chart));
     model

@@ -61,7 +61,7 @@ fn heading(node: SyntaxNode<'_>) -> TextRange {
 
 impl Pl7 {
     pub(super) fn new(root: SyntaxNode<'_>, entity: Entity, language: Language) -> Self {
-        let b = Builder::new(entity, language, heading(root));
+        let b = Builder::new(entity, language, heading(root), root.text_range().len());
         let mut pl7 = Self { b, items: dfb::Items::default() };
         dfb::enter(&mut pl7, root);
         pl7
@@ -95,11 +95,11 @@ impl Pl7 {
         let range = it.syntax().text_range();
         let address = it.address();
         if self.is_pl7_2() {
-            return self.word_object(address, range);
+            return self.word_object(&address, range);
         }
-        let index = it.index();
+        let index = if it.syntax().is_leaf() { None } else { it.index() };
         if index.is_none()
-            && let Some(&id) = self.b.model.addresses.get(&address)
+            && let Some(&id) = self.b.model.addresses.get(&*address)
         {
             return (id, range);
         }
@@ -119,7 +119,7 @@ impl Pl7 {
             Err(error) => return (self.address_error(error, range, &address), range),
         };
         if is_direct {
-            self.b.model.addresses.insert(address, id);
+            self.b.model.addresses.insert(address.into(), id);
         }
         (id, range)
     }

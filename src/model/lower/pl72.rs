@@ -108,13 +108,13 @@ struct Source {
 
 impl Pl7 {
     /// An object of PL7-2. The read of its index is recorded.
-    pub(super) fn word_object(&mut self, address: SmolStr, range: TextRange) -> (ObjectId, TextRange) {
-        if let Some(&id) = self.b.model.addresses.get(&address) {
+    pub(super) fn word_object(&mut self, address: &str, range: TextRange) -> (ObjectId, TextRange) {
+        if let Some(&id) = self.b.model.addresses.get(address) {
             return (id, range);
         }
-        let found = match pl72::parse(&address) {
+        let found = match pl72::parse(address) {
             Ok(found) => found,
-            Err(error) => return (self.address_error(error, range, &address), range),
+            Err(error) => return (self.address_error(error, range, address), range),
         };
         let id = self.b.object(found.object);
         match found.index {
@@ -124,7 +124,7 @@ impl Pl7 {
                 self.b.model.indexes.push(Index { what: IndexKind::Object(index), range });
             }
             None => {
-                self.b.model.addresses.insert(address, id);
+                self.b.model.addresses.insert(address.into(), id);
             }
         }
         (id, range)
