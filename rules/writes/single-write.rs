@@ -32,7 +32,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
-        if let Some((second, others)) = drives::conflict(cx.program, &writes, drives::override_each_other) {
+        let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
+            drives::override_each_other(a, b) && !drives::of_one_instance(cx.program, a, b)
+        };
+        if let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))
                 .label("assigned here too, which overrides the other")
                 .related_all(others.iter().map(|it| (it.site(), format!("also {} here", it.mode.verb()))));

@@ -12,6 +12,7 @@ pub mod edges;
 pub mod facts;
 pub mod gaps;
 pub mod program;
+pub mod satisfy;
 pub mod symbols;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.

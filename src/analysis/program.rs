@@ -9,11 +9,11 @@ use smol_str::SmolStr;
 use super::Site;
 use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
-use crate::model::dfb::Interface;
+use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
-use crate::model::unit::{Callee, Mode, Pin, Section};
+use crate::model::unit::{Callee, Formal, Mode, Pin, Section};
 use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
@@ -152,6 +152,40 @@ impl<'a> ObjectUses<'a> {
     }
 }
 
+/// Places computed at run time.
+#[derive(Debug)]
+struct Indirect<'a> {
+    /// By a pointer, or an index on a symbol that nothing resolves.
+    anywhere: bool,
+    /// By an index on an address, which does not lead out of its area: where it would, the controller takes 0 for it
+    /// (PL7:1134-1143).
+    areas: FxHashSet<&'a Area>,
+}
+
+impl<'a> Indirect<'a> {
+    fn new(
+        units: &[&UnitFacts],
+        objects: &[ObjectUses<'a>],
+        by_unit: impl Fn(&UnitFacts) -> bool,
+        by_object: impl Fn(&ObjectUses<'a>) -> bool,
+    ) -> Self {
+        let mut found = Self { anywhere: units.iter().any(|it| by_unit(it)), areas: FxHashSet::default() };
+        for it in objects.iter().filter(|it| !it.object.is_fixed() && by_object(it)) {
+            let area = &it.object.footprint.area;
+            found.anywhere |= matches!(area, Area::Indirect | Area::Symbol(_));
+            if it.object.indexed {
+                found.areas.insert(area);
+            }
+        }
+        found
+    }
+
+    fn may_be_in(&self, area: &Area) -> bool {
+        // What is meant by a symbol that nothing resolves may lie anywhere.
+        self.anywhere || self.areas.contains(area) || matches!(area, Area::Symbol(_)) && !self.areas.is_empty()
+    }
+}
+
 /// A call resolved to a unit of the program, where it is one.
 #[derive(Debug, Clone, Copy)]
 pub struct GlobalCall<'a> {
@@ -195,8 +229,8 @@ pub struct ProgramIndex<'a> {
     pub complete: bool,
     /// Some of the program was not read or not understood.
     pub partial: bool,
-    /// Areas in which an indexed object is written.
-    indexed: FxHashSet<&'a Area>,
+    written: Indirect<'a>,
+    read: Indirect<'a>,
     exclusive: FxHashSet<(u32, u32, u32)>,
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
@@ -232,8 +266,8 @@ impl<'a> ProgramIndex<'a> {
             .flat_map(|(unit, facts)| facts.exclusive_uses.iter().map(move |&(a, b)| (unit, a, b)))
             .collect();
         let objects = collect(&units, &order, &calls);
-        let indexed = objects.iter().filter(|it| it.object.indexed && it.is_written());
-        let indexed = indexed.map(|it| &it.object.footprint.area).collect();
+        let written = Indirect::new(&units, &objects, |it| it.writes_indirectly, ObjectUses::is_written);
+        let read = Indirect::new(&units, &objects, |it| it.reads_indirectly, ObjectUses::is_read);
         let partial = units.iter().any(|it| it.has_gaps);
         Self {
             family,
@@ -247,7 +281,8 @@ impl<'a> ProgramIndex<'a> {
             order,
             complete,
             partial,
-            indexed,
+            written,
+            read,
             exclusive,
             exclusive_uses,
             names,
@@ -327,7 +362,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether an indexed object, which may be any of its area, is written in an area.
     pub fn is_written_by_index(&self, area: &Area) -> bool {
-        self.indexed.contains(area)
+        self.written.areas.contains(area)
     }
 
     /// Whether two calls can both happen in the same scan of the same context.
@@ -387,25 +422,36 @@ impl<'a> ProgramIndex<'a> {
         self.contexts[unit as usize] == [Context::Startup]
     }
 
-    /// Whether some unit writes a place computed at run time: the absence of another write says nothing then.
-    pub fn writes_indirectly(&self) -> bool {
-        self.units.iter().any(|it| it.writes_indirectly)
-            || self.objects.iter().any(|it| !it.object.is_fixed() && it.is_written())
+    /// Whether some unit writes a place computed at run time that may lie in the area: the absence of another write says
+    /// nothing then.
+    pub fn writes_indirectly(&self, area: &Area) -> bool {
+        self.written.may_be_in(area)
     }
 
-    /// Whether some unit reads a place computed at run time.
-    pub fn reads_indirectly(&self) -> bool {
-        self.units.iter().any(|it| it.reads_indirectly)
-            || self.objects.iter().any(|it| !it.object.is_fixed() && it.is_read())
+    /// Whether some unit reads a place computed at run time that may lie in the area.
+    pub fn reads_indirectly(&self, area: &Area) -> bool {
+        self.read.may_be_in(area)
     }
 
-    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address.
+    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address. The items of an
+    /// instance of a DFB have none.
     pub fn has_unresolved(&self, wanted: impl Fn(Mode) -> bool) -> bool {
+        let is_item = |it: &ObjectUses<'_>| {
+            let instance = it.object.text.split_once('.').map(|it| UnitName::Instance(key(it.0)));
+            instance.is_some_and(|it| self.names.contains_key(&it))
+        };
         self.objects.iter().any(|it| {
             matches!(it.object.footprint.area, Area::Symbol(_))
+                && !is_item(it)
                 && !it.uses.iter().any(|it| matches!(it.mode, Mode::Drive(_)))
                 && it.uses.iter().any(|it| wanted(it.mode))
         })
+    }
+
+    /// The object of a use as its unit writes it.
+    pub fn text_of(&self, it: &GlobalUse<'_>) -> &str {
+        let objects = self.units.get(it.unit as usize).map_or(&[][..], |it| &it.objects);
+        objects.get(it.it.object as usize).map_or("", |it| it.object.text.as_str())
     }
 
     /// Heading of a unit.
@@ -659,13 +705,26 @@ fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -
 
 /// What a called block of the program does with an actual parameter.
 fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit: u32, it: &Use) -> Mode {
-    let Some((call, name)) = &it.parameter else { return it.mode };
-    let Some(&target) = targets.get(&(unit, *call)) else { return it.mode };
-    let declared = &units[target as usize].declared;
-    match declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
-        Some(Section::Input) => Mode::Read,
-        Some(Section::Output) => Mode::Output,
-        _ => it.mode,
+    let Some((call, formal)) = &it.parameter else { return it.mode };
+    let Some(target) = targets.get(&(unit, *call)).and_then(|&target| units.get(target as usize)) else {
+        return it.mode;
+    };
+    match formal {
+        Formal::Name(name) => {
+            match target.declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
+                Some(Section::Input) => Mode::Read,
+                Some(Section::Output) => Mode::Output,
+                _ => it.mode,
+            }
+        }
+        Formal::Position(position) => {
+            let mut parameters = target.interface.iter().flat_map(|it| it.parameters());
+            match parameters.nth(*position as usize).map(|it| it.role) {
+                Some(Role::Input) => Mode::Read,
+                Some(Role::Output) => Mode::Output,
+                _ => it.mode,
+            }
+        }
     }
 }
 

@@ -81,7 +81,7 @@ impl<'a> UnitCx<'a> {
     pub fn nodes_in(&self, kind: SyntaxKind) -> impl Iterator<Item = (SyntaxNode<'a>, SyntaxNode<'a>)> {
         let nodes = self.nodes.get_or_init(|| {
             let root = self.parse.syntax();
-            let mut nodes = Vec::with_capacity(self.text.len() / 32);
+            let mut nodes = Vec::with_capacity(self.text.len() / 16);
             let mut open = vec![(root, root.children_with_tokens())];
             while let Some((parent, children)) = open.last_mut() {
                 let Some(child) = children.next() else {

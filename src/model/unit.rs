@@ -150,8 +150,8 @@ pub struct Access {
     pub version: u32,
     /// For reads: whether the value may stem from before this unit's own assignments, so from another unit or scan.
     pub exposed: bool,
-    /// For an actual parameter: the name of the formal one.
-    pub parameter: Option<SmolStr>,
+    /// For an actual parameter: the formal one.
+    pub parameter: Option<Formal>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -267,6 +267,14 @@ pub enum Callee {
     Instance(SmolStr),
     /// Computed at run time.
     Unknown,
+}
+
+/// A formal parameter, as a call says which it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Formal {
+    Name(SmolStr),
+    /// Place among the parameters, from 0.
+    Position(u32),
 }
 
 /// A parameter of a call with what was given for it.

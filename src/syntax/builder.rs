@@ -124,16 +124,26 @@ impl<'t> TokenCache<'t> {
 /// Of up to 24 bytes; its low bits are mixed.
 fn hash(raw: rowan::SyntaxKind, text: &[u8]) -> usize {
     const MULTIPLIER: u64 = 0x9E37_79B9_7F4A_7C15;
-    let word = |bytes: &[u8]| {
-        let mut word = [0; 8];
-        word[..bytes.len()].copy_from_slice(bytes);
-        u64::from_le_bytes(word)
-    };
+    let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(MULTIPLIER).rotate_left(29);
     let mut hash = u64::from(raw.0) ^ (text.len() as u64) << 16;
-    let (chunks, rest) = text.as_chunks::<8>();
-    for chunk in chunks {
-        hash = (hash ^ u64::from_le_bytes(*chunk)).wrapping_mul(MULTIPLIER).rotate_left(29);
+    // The pieces may overlap: together they are all of the text.
+    match (text.first_chunk::<8>(), text.last_chunk::<8>()) {
+        (Some(first), Some(last)) => {
+            hash = mix(hash, u64::from_le_bytes(*first));
+            if let Some(middle) = text.get(8..16).and_then(<[u8]>::first_chunk) {
+                hash = mix(hash, u64::from_le_bytes(*middle));
+            }
+            hash = mix(hash, u64::from_le_bytes(*last));
+        }
+        _ => {
+            let word = match (text.first_chunk::<4>(), text.last_chunk::<4>()) {
+                (Some(first), Some(last)) => {
+                    u64::from(u32::from_le_bytes(*first)) << 32 | u64::from(u32::from_le_bytes(*last))
+                }
+                _ => text.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)),
+            };
+            hash = mix(hash, word);
+        }
     }
-    hash = (hash ^ word(rest)).wrapping_mul(MULTIPLIER);
-    (hash >> 40) as usize
+    (hash >> 20) as usize
 }

@@ -11,7 +11,7 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Index, IndexKind, Leave, Mode, OddityKind, Pin, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Formal, Index, IndexKind, Leave, Mode, OddityKind, Pin, StatementKind,
 };
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
 use crate::syntax::pl7::functions::{self, Function};
@@ -487,6 +487,13 @@ impl Pl7 {
             let Some(argument) = argument else { continue };
             let at = argument.syntax().text_range();
             let (object, ..) = self.argument(&argument, function, position);
+            // The index of an object is read before the object itself is accessed.
+            if object.is_some()
+                && function.is_none()
+                && let Some(access) = self.b.model.accesses.last_mut().filter(|it| it.mode == Mode::InOut)
+            {
+                access.parameter = Some(Formal::Position(index(position)));
+            }
             arguments.push(Argument { name: None, object, range: at, position: index(position) });
         }
         let callee_kind = match function {
