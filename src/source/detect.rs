@@ -574,9 +574,9 @@ impl Tally {
         }
     }
 
-    /// Whether ladder and charts are PL7-2's: their operands say so, or where they say nothing, the configuration.
+    /// Whether ladder and charts are PL7-2's: most of their operands say so, or where they say nothing, the configuration.
     fn is_pl7_2(&self, configured: Option<Family>) -> bool {
-        self.not_pl7_2 == 0 && (self.pl7_2 > 0 || configured == Some(Family::Pl72))
+        self.pl7_2 > self.not_pl7_2 || self.not_pl7_2 == 0 && configured == Some(Family::Pl72)
     }
 
     fn is_exchange(&self) -> bool {
@@ -1284,6 +1284,8 @@ mod tests {
         assert_eq!(with(None, &exchange("B5")), Detected::Exchange);
         assert_eq!(with(Some(Family::Pl72), &exchange("B5")), Detected::Pl72Exchange);
         assert_eq!(with(Some(Family::Pl72), &exchange("%M5")), Detected::Exchange);
+        // A mistake in one operand changes nothing.
+        assert_eq!(with(None, &format!("{}{}{}", rung("I0,05"), rung("T0,D"), rung("%M5"))), Detected::Pl72);
         // Lists and text are PL7's, whatever is configured.
         assert_eq!(with(Some(Family::Pl72), "! %M1 := %M2;\n! %M3 := %M4;\n! %M5 := %M6;\n"), ST);
     }
