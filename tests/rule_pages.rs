@@ -65,6 +65,7 @@ fn examples(rule: &Rule) -> Vec<Example> {
                 "pl7" | "dfb" => Dialect::Pl7,
                 "gr7" => Dialect::Pl7Gr7,
                 "sfc" => Dialect::Sfc,
+                "pl72" => Dialect::Pl72,
                 other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
             };
             assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
@@ -126,7 +127,7 @@ fn every_dialect_has_its_examples() {
         let examples = examples(rule);
         for dialect in rule.dialects {
             let wanted: &[Dialect] = match *dialect {
-                "all" => &[Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St],
+                "all" => &[Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St, Dialect::Pl72],
                 "pl7" => &[Dialect::Pl7Il, Dialect::Pl7St],
                 "s7" => &[Dialect::Step7],
                 "il" => &[Dialect::Pl7Il],
@@ -134,8 +135,9 @@ fn every_dialect_has_its_examples() {
                 "ld" => &[Dialect::Pl7Ld],
                 "g7" => &[Dialect::Pl7Gr7],
                 "dfb" => &[Dialect::Pl7],
+                "pl72" => &[Dialect::Pl72],
                 // Read in a later version.
-                "s5" | "pl72" => &[],
+                "s5" => &[],
                 other => panic!("{}: dialect `{other}`", rule.name),
             };
             for &wanted in wanted {

@@ -532,6 +532,11 @@ impl Settings {
         self.0.overrides.controller.as_deref().or(file)
     }
 
+    /// The family of the configured controller.
+    pub fn controller_family(&self) -> Option<Family> {
+        self.controller()?.parse::<Target>().ok().map(|it| it.family())
+    }
+
     /// Whether the command line names another controller than the file, which then says nothing of it.
     fn is_another_controller(&self) -> bool {
         let parse = |it: &str| it.parse::<Target>().ok();
