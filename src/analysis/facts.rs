@@ -8,6 +8,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::chart::ChartFacts;
+use super::cost::UnitCost;
 use super::{conditions, gaps};
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
@@ -147,6 +148,8 @@ pub struct UnitFacts {
     pub chart: Option<Box<ChartFacts>>,
     /// The parameters and variables of a DFB type.
     pub interface: Option<Box<Interface>>,
+    /// Of a unit of PL7-2.
+    pub cost: Option<Box<UnitCost>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -268,6 +271,7 @@ impl UnitFacts {
             has_gaps: model.has_gaps,
             chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity))),
             interface: model.interface.clone(),
+            cost: UnitCost::new(model),
         }
     }
 }

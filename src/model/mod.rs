@@ -13,5 +13,6 @@ pub mod object;
 pub mod pl7_kinds;
 pub mod symbols;
 pub mod unit;
+pub mod work;
 
 pub use unit::UnitModel;

@@ -89,6 +89,7 @@ impl Builder {
             oddities: Vec::new(),
             unreachable: Vec::new(),
             hollows: Vec::new(),
+            networks: Vec::new(),
             computes: None,
             anchors: vec![heading],
             instance_of: None,
