@@ -1,7 +1,7 @@
 //! M002: a fast task that is longer than its period allows.
 
 use crate::analysis::Site;
-use crate::analysis::cost::{self, milliseconds};
+use crate::analysis::cost;
 use crate::analysis::program::{ObjectUses, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Task;
@@ -27,8 +27,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let is_many = cost.networks > row.networks.value;
     let Some(&(first, _)) = cost.units.first().filter(|_| is_long || is_many) else { return };
     let networks = format!("{} networks, and {} are the most", cost.networks, row.networks.value);
-    let limit = milliseconds(u64::from(row.duration_us.value) * 1_000);
-    let time = format!("{}, and {limit} are the most", milliseconds(cost.code_ns));
+    let (took, most) = (cost.code_ns.div_ceil(1_000), row.duration_us.value);
+    let time = format!("{took} microseconds, and {most} are the most");
     let every = format!("in a task that runs every {} ms", row.period_ms.value);
     let message = match (is_many, is_long) {
         (true, true) => format!("the fast task has {networks}, and may take {time}, {every}"),

@@ -6,8 +6,8 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::entity::Task;
-use crate::model::object::{Area, Class, Object, Type};
-use crate::model::unit::{Access, Mode, Pin};
+use crate::model::object::{Area, Class, Type};
+use crate::model::unit::{Access, Mode, Pin, StatementKind};
 use crate::syntax::pl7::ast::{AssignStmt, BinOp, Cell, Expr};
 use crate::syntax::pl7::ladder_words::Element;
 use crate::syntax::{AstNode as _, SyntaxKind};
@@ -36,11 +36,10 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     if is_fast && ![Feature::PeriodicFastTask, Feature::EventFastTask].iter().any(|it| model.has(*it)) {
         add(&mut uses, Missing::Feature(Feature::PeriodicFastTask), cx.model.heading(), "the fast task");
     }
-    for access in &cx.model.accesses {
-        let object = cx.model.object(access.object);
-        let place = cx.model.place(access.anchor);
-        if let Some(missing) = of_access(cx, &model, access, object, place) {
-            add(&mut uses, missing, place, &object.text);
+    for (at, access) in (0..).zip(&cx.model.accesses) {
+        let (text, place) = (&cx.model.object(access.object).text, cx.model.place(access.anchor));
+        if let Some(missing) = of_access(cx, &model, at, access) {
+            add(&mut uses, missing, place, text);
         }
     }
     of_operations(cx, &model, &mut uses);
@@ -95,7 +94,9 @@ fn describe(missing: &Missing, text: &str, name: &str) -> (String, String) {
     }
 }
 
-fn of_access(cx: &UnitCx<'_>, model: &Model, access: &Access, object: &Object, place: TextRange) -> Option<Missing> {
+/// `at`: number of the access.
+fn of_access(cx: &UnitCx<'_>, model: &Model, at: u32, access: &Access) -> Option<Missing> {
+    let object = cx.model.object(access.object);
     let lacks = |feature: Feature| (!model.has(feature)).then_some(Missing::Feature(feature));
     match (&object.footprint.area, object.class) {
         (Area::ModuleWords(_), _) if !model.has(Feature::Couplers) => lacks(Feature::Couplers),
@@ -114,16 +115,16 @@ fn of_access(cx: &UnitCx<'_>, model: &Model, access: &Access, object: &Object, p
         }
         // Emission and reception: the simple block has neither input.
         (Area::Block("TXT", _), Class::Block) if access.mode == Mode::Drive(Pin::Whole) => {
-            let wired =
-                cx.model.statements.get(access.statement as usize).is_some_and(|it| {
-                    matches!(it.kind, crate::model::unit::StatementKind::Drive { pin: Pin::Whole, .. })
-                });
+            let wired = matches!(
+                cx.model.statements.get(access.statement as usize).map(|it| &it.kind),
+                Some(&StatementKind::Drive { access, pin: Pin::Whole, .. }) if access == at
+            );
             if wired { lacks(Feature::CompleteText) } else { None }
         }
         _ if object.extracted => lacks(Feature::WordBits),
         (Area::Words | Area::Constants, _) if matches!(object.ty, Type::WordTable(_)) => {
             // What a conversion reads or writes is a table too, and written as a word.
-            if cx.text_of(place).contains('[') { lacks(Feature::WordTables) } else { None }
+            if cx.text_of(cx.model.place(access.anchor)).contains('[') { lacks(Feature::WordTables) } else { None }
         }
         _ => None,
     }

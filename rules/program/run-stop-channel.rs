@@ -7,7 +7,7 @@ use crate::target::pl72::{RUN_STOP_INPUT, SECURITY_OUTPUT, Series};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let model = cx.target.pl72();
-    if !model.is_some_and(|it| it.controller.is_none_or(|it| it.series == Series::Tsx17)) {
+    if model.is_none_or(|it| it.controller.is_some_and(|it| it.series != Series::Tsx17)) {
         return;
     }
     let channels = [

@@ -4,9 +4,14 @@ use crate::analysis::program::{Context, GlobalUse};
 use crate::analysis::{Site, drives};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::Area;
+use crate::target::pl72::Feature;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
+    // Of a controller that has no such modules, O006 speaks.
+    if cx.target.pl72().is_none_or(|it| !it.has(Feature::Couplers)) {
+        return;
+    }
     let words = program.objects.iter().filter(|it| matches!(it.object.footprint.area, Area::ModuleWords(_)));
     for uses in words {
         let is_fast = |it: &&GlobalUse<'_>| program.tasks(it.unit).any(|it| it == Context::Fast);

@@ -86,7 +86,8 @@ fn report(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, place: TextRange, val
     let text = cx.text_of(place);
     let message = match value.stored {
         Some(_) => format!("`{text}` is {} here, and {takes}", value.value),
-        None if text == value.value.to_string() => format!("{takes}, and not {text}"),
+        // A number as it is, or in the word of a shift.
+        None if text.ends_with(&value.value.to_string()) => format!("{takes}, and not {}", value.value),
         None => format!("{takes}, and not `{text}` ({})", value.value),
     };
     let stored = value.stored.map(|it| (cx.model.place(it), format!("`{text}` is set here")));

@@ -235,9 +235,9 @@ pub fn name_of(entity: &Entity) -> String {
     }
 }
 
-/// `157.3 ms`.
+/// `157.4 ms`, rounded up.
 pub fn milliseconds(nanoseconds: u64) -> String {
-    let tenths = nanoseconds / 100_000;
+    let tenths = nanoseconds.div_ceil(100_000);
     format!("{}.{} ms", tenths / 10, tenths % 10)
 }
 
@@ -299,6 +299,6 @@ mod tests {
 
     #[test]
     fn times_are_written_in_tenths() {
-        assert_eq!([0, 149_999, 157_340_000].map(milliseconds), ["0.0 ms", "0.1 ms", "157.3 ms"]);
+        assert_eq!([0, 149_999, 157_300_000].map(milliseconds), ["0.0 ms", "0.2 ms", "157.3 ms"]);
     }
 }
