@@ -208,6 +208,11 @@ fn named_entities(db: &dyn Db, file: SourceFile) -> Box<[Entity]> {
     entities.filter(|it| **it != Entity::Container).cloned().collect()
 }
 
+/// Whether a file is a whole application (`.FEF`), by its content: it holds the variables as well as the code.
+fn is_application(db: &dyn Db, file: SourceFile) -> bool {
+    !named_entities(db, file).is_empty() && *declares_variables(db, file)
+}
+
 /// Whether a file declares variables beside or without code: it belongs to the code around it.
 #[salsa::tracked]
 fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
@@ -218,7 +223,8 @@ fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
 /// The programs of the project.
 ///
 /// Files of one folder and vendor are one program, unless two of them define the same entity (two variants of one
-/// machine side by side) or hold code that does not say what it is: those stand alone.
+/// machine side by side) or hold code that does not say what it is: those stand alone. Where whole applications lie beside
+/// exports of their parts, each application is a program, and the other files are one, to which files of variables belong.
 #[salsa::tracked(returns(deref))]
 pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     let project = db.project();
@@ -245,23 +251,32 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     }
     let mut programs = Vec::new();
     for (folder, family, files) in folders {
-        let mut seen = FxHashSet::default();
-        let clash = files.iter().any(|&file| {
-            let mut own = FxHashSet::default();
-            let entities = named_entities(db, file).iter().filter(|it| own.insert(*it));
-            // A file that repeats an entity is judged on its own; two files that share one are two programs.
-            entities.filter(|it| !seen.insert(*it)).count() > 0
-        });
-        if clash && scope == ProgramScope::Auto {
-            alone.extend(files.into_iter().map(|file| (family, file)));
-        } else {
+        if scope != ProgramScope::Auto || !clash(db, &files) {
             programs.push(Program::new(db, folder, family, files));
+            continue;
+        }
+        let (whole, parts): (Vec<SourceFile>, Vec<SourceFile>) =
+            files.into_iter().partition(|&it| is_application(db, it));
+        alone.extend(whole.into_iter().map(|file| (family, file)));
+        if parts.is_empty() || clash(db, &parts) {
+            alone.extend(parts.into_iter().map(|file| (family, file)));
+        } else {
+            programs.push(Program::new(db, folder, family, parts));
         }
     }
     for (family, file) in alone {
         programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file]));
     }
     programs.into_boxed_slice()
+}
+
+/// Whether two files define the same entity. One that repeats its own is judged by itself.
+fn clash(db: &dyn Db, files: &[SourceFile]) -> bool {
+    let mut seen = FxHashSet::default();
+    files.iter().any(|&file| {
+        let own: FxHashSet<&Entity> = named_entities(db, file).iter().collect();
+        own.into_iter().filter(|it| !seen.insert(*it)).count() > 0
+    })
 }
 
 fn folder_of(path: &str) -> &str {

@@ -1,14 +1,14 @@
 //! The corpus: every finding in it was judged by hand, and a snapshot of each folder keeps it so.
 //!
 //! A folder of `corpus/` that holds programs is checked by itself, as a user would: once with the rules that are on
-//! from the start, once with all of them. `corpus/README.md` says where the programs are from.
+//! from the start, once with all of them, and with its `plclint.toml` where it has one. `corpus/README.md` says where the programs are from.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use plclint::db::{self, Input};
-use plclint::lint::Outcome;
-use plclint::lint::settings::{Folders, Overrides, Settings};
+use plclint::lint::settings::{self, Folders, Overrides, Settings};
+use plclint::lint::{Location, Outcome};
 use plclint::report::{self, Format, Options};
 use plclint::source::detect::{self, Dialect, FileHint};
 
@@ -33,7 +33,7 @@ fn folders() -> Vec<(String, Vec<PathBuf>)> {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
                 open.push(path);
-            } else if path.extension().is_none_or(|it| it != "md") {
+            } else if path.extension().is_none_or(|it| it != "md" && it != "toml") {
                 files.push(path);
             }
         }
@@ -59,7 +59,11 @@ fn load(path: &Path, dialect: Dialect) -> Input {
 
 fn check(files: &[PathBuf], select: Option<&str>) -> Outcome {
     let overrides = Overrides { select: select.map(|it| vec![it.to_owned()]), ..Overrides::default() };
-    let settings = Settings::without_file(Folders::default(), overrides).expect("a selection");
+    let folder = files.first().and_then(|it| it.parent()).expect("a file in a folder");
+    let file = folder.join(settings::FILE_NAME);
+    let text = if file.exists() { fs::read_to_string(&file).expect("UTF-8") } else { String::new() };
+    let folders = Folders { root: folder.to_owned(), current: root() };
+    let settings = Settings::parse(&text, &file, folders, overrides).expect("a configuration");
     let inputs = files.iter().map(|path| {
         let known = !UNRECOGNISED.contains(&relative(path).as_str());
         load(path, if known { Dialect::Auto } else { Dialect::Pl7St })
@@ -117,6 +121,47 @@ fn clean_programs_have_no_finding() {
         for select in [None, Some("all")] {
             assert_eq!(findings(&check(files, select)), "", "{name}");
         }
+    }
+}
+
+/// What a finding says, and the text of the lines that it points at with the column: the same however the program was
+/// exported.
+fn said(outcome: &Outcome) -> Vec<String> {
+    let place = |at: Location| {
+        let text = &outcome.files[at.file as usize].text;
+        let (start, end) = (usize::from(at.range.start()), usize::from(at.range.end()));
+        let from = text[..start].rfind('\n').map_or(0, |it| it + 1);
+        let to = text[end..].find('\n').map_or(text.len(), |it| end + it);
+        format!("{}: {}", start - from, text[from..to].replace("\r\n", "\n").trim_end())
+    };
+    let all = outcome.diagnostics.iter().map(|it| {
+        let (entity, it) = (&it.entity, &it.finding);
+        let related: Vec<String> = it.related.iter().map(|it| format!("{} {}", place(it.place), it.message)).collect();
+        let (code, severity, here) = (it.rule.code, it.severity, place(it.place));
+        format!("{entity} {code} {severity:?} {} {:?} {here} {related:?} {:?}", it.message, it.label, it.notes)
+    });
+    let mut all: Vec<String> = all.collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn an_application_file_has_the_findings_of_its_sections() {
+    let folders = folders();
+    let files = |name: &str| &folders.iter().find(|it| it.0 == name).expect("a folder of the corpus").1;
+    let (sections, application) = (files("programs/traitement-surface"), files("programs/traitement-surface-fef"));
+    assert!(sections.len() > 20 && application.len() == 1);
+    for select in [None, Some("all")] {
+        let (sections, application) = (check(sections, select), check(application, select));
+        assert!(said(&sections).len() > 15);
+        assert_eq!(said(&sections), said(&application), "{select:?}");
+        // What the vendor keeps for himself is counted, and nothing else.
+        assert!(sections.files.iter().all(|it| it.not_understood == 0));
+        let text = &application.files[0].text;
+        let vendor = text.split("[VENDOR]").nth(1).and_then(|it| it.split("[SOURCE_UNIT]").next()).expect("the block");
+        let missed = application.files[0].not_understood;
+        assert!(missed > vendor.len() / 2 && missed <= vendor.len(), "{missed} of {}", vendor.len());
+        assert_eq!(application.files[0].encoding, "windows-1252");
     }
 }
 

@@ -336,6 +336,50 @@ fn a_folder_with_everything() {
     }
 }
 
+/// An application and exports of its parts: two programs, and the exported variables belong to the exported sections.
+#[test]
+fn an_application_beside_exports_of_its_parts() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let write = |path: &str, text: &str| fs::write(folder.path().join(path), text).expect("a file");
+    write("main.st", MAIN);
+    write("plant.fef", &application().replace("Motor AT %Q2.1", "Fan AT %Q2.7"));
+    write("variables.scy", VARIABLES);
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,N004,N001"]);
+    let lines: Vec<&str> = out.lines().collect();
+    let expected = [
+        "main.st:6:12: W001[single-write] warning: `Pump` (`%Q2.0`) is assigned in more than one place [MAST - MAIN]",
+        "plant.fef:12:12: W001[single-write] warning: `Pump` (`%Q2.0`) is assigned in more than one place [MAST - MAIN]",
+        "plant.fef:18:45: N004[symbol-unused] note: the program does not use `Fan`, the symbol of `%Q2.7` [file]",
+        "variables.scy:5:45: N004[symbol-unused] note: the program does not use `Motor`, the symbol of `%Q2.1` [file]",
+    ];
+    assert_eq!(lines[..lines.len() - 1], expected);
+    // A second version of the section: which of the two the variables are for, nobody can tell.
+    write("old.st", MAIN);
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001"]);
+    assert!(out.starts_with("plant.fef:12:12: W001"), "{out}");
+}
+
+/// A DFB type that somebody saved without the frame of the exchange format belongs to the sections beside it.
+#[test]
+fn a_dfb_type_without_a_frame() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let write = |path: &str, text: &str| fs::write(folder.path().join(path), text).expect("a file");
+    write("main.st", &MAIN.replace("Pump := %I1.0", "Cpt_vis(%I1.0, Pump)"));
+    write("variables.scy", VARIABLES);
+    let dfb = "(* Compteur *)\nFUNCTION_BLOCK Cpt_pieces\nVAR_INPUT\n Count : EBOOL;\nEND_VAR\nVAR_OUTPUT\n Done : BOOL;\n\
+               END_VAR\nVAR\n V_cour : WORD;\nEND_VAR\nIF RE Count THEN\n INC V_cour;\nEND_IF;\nDone := V_cour > 9;\n\
+               %M5 := Done;\nEND_FUNCTION_BLOCK\n";
+    write("cpt_pieces.txt", dfb);
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,F"]);
+    let lines: Vec<&str> = out.lines().collect();
+    let expected = [
+        "cpt_pieces.txt:16:1: F007[dfb-global-object] error: `%M5` belongs to the application, which the code of a DFB \
+         cannot reach [FUNCTION_BLOCK Cpt_pieces]",
+        "main.st:6:12: W001[single-write] warning: `Pump` (`%Q2.0`) is assigned in more than one place [MAST - MAIN]",
+    ];
+    assert_eq!(lines[..lines.len() - 1], expected);
+}
+
 /// A binary file has no lines: no report gives any.
 #[test]
 fn places_in_a_project() {

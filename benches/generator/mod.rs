@@ -186,17 +186,22 @@ pub fn pl7(bytes: usize, seed: u64) -> String {
     text
 }
 
-/// Objects of one section: a hundred words and a hundred bits of its own, as far as the address space goes.
+/// Words and bits of the largest controllers, in round numbers.
+const OBJECTS: u64 = 30_000;
+
+/// Objects of one section: a hundred words and a hundred bits of its own, as far as the address space goes. Behind that,
+/// sections share words, and compute where others drive bits.
 struct Section {
     first: u64,
     /// Bits and timers are driven in one place each.
-    next_bit: u64,
+    next_bit: Option<u64>,
     next_timer: u64,
 }
 
 impl Section {
     fn new(number: u64, next_timer: u64) -> Self {
-        Self { first: number * 100 % 65_000, next_bit: 0, next_timer }
+        let first = number * 100;
+        Self { first: first % OBJECTS, next_bit: (first < OBJECTS).then_some(0), next_timer }
     }
 
     /// A word that is computed with, one of thirty.
@@ -224,10 +229,19 @@ impl Section {
         self.first + 90 + random.below(10)
     }
 
-    /// A bit that nothing drives yet.
-    fn bit(&mut self) -> u64 {
-        self.next_bit += 1;
-        self.first + self.next_bit % 90
+    /// A bit that nothing drives yet, as long as there is one.
+    fn bit(&mut self) -> Option<u64> {
+        let bit = self.next_bit.as_mut()?;
+        *bit += 1;
+        Some(self.first + *bit % 90)
+    }
+
+    /// An instruction that applies a result to a bit, or counts it.
+    fn action(&mut self, mnemonic: &str, word: u64) -> String {
+        match self.bit() {
+            Some(bit) => format!("{mnemonic:<7} %M{bit}"),
+            None => format!("[%MW{word}:=%MW{word}+1]"),
+        }
     }
 
     /// A timer that nothing starts yet, as long as there is one.
@@ -246,10 +260,13 @@ fn st_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
     match random.below(6) {
         0 => writeln!(text, "  %MW{word} := %MW{source} * 10 + %KW{};", random.below(100)).expect("a string"),
         1 => {
-            let bit = section.bit();
+            let (set, reset) = match section.bit() {
+                Some(bit) => (format!("    SET %M{bit};\n"), format!("    RESET %M{bit};\n")),
+                None => (String::new(), String::new()),
+            };
             writeln!(text, "  IF {input} AND NOT %M{} THEN", section.request(random)).expect("a string");
-            writeln!(text, "    %MW{word} := %MW{word} + 1;\n    SET %M{bit};\n  ELSE").expect("a string");
-            writeln!(text, "    %MW{word} := 0;\n    RESET %M{bit};\n  END_IF;").expect("a string");
+            writeln!(text, "    %MW{word} := %MW{word} + 1;\n{set}  ELSE").expect("a string");
+            writeln!(text, "    %MW{word} := 0;\n{reset}  END_IF;").expect("a string");
         }
         2 => {
             writeln!(text, "  FOR %MW{word} := 0 TO {} DO", random.below(7)).expect("a string");
@@ -280,22 +297,24 @@ fn il_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
     writeln!(text, "! (* {} {} *)", random.pick(DEVICES), random.pick(STATES)).expect("a string");
     let input = format!("%I{}.{}", random.below(8) + 1, random.below(16));
     let (request, other) = (section.request(random), section.request(random));
+    let spare = section.first + 46;
     match random.below(4) {
         0 => {
             writeln!(text, "      LD      {input}\n      AND(N   %M{request}").expect("a string");
-            writeln!(text, "      OR      %M{other}\n      )\n      ST      %M{}", section.bit()).expect("a string");
+            writeln!(text, "      OR      %M{other}\n      )\n      {}", section.action("ST", spare))
+                .expect("a string");
         }
         1 => {
             writeln!(text, "      LD      {input}\n      MPS\n      AND     %M{request}").expect("a string");
-            writeln!(text, "      S       %M{}\n      MPP\n      R       %M{}", section.bit(), section.bit())
-                .expect("a string");
+            let (set, reset) = (section.action("S", spare), section.action("R", spare));
+            writeln!(text, "      {set}\n      MPP\n      {reset}").expect("a string");
         }
         2 => {
             let source = section.source(random);
             writeln!(text, "      LD      [%MW{source}>{}]", random.below(500)).expect("a string");
             match section.timer() {
                 Some(timer) => writeln!(text, "      IN      %TM{timer}").expect("a string"),
-                None => writeln!(text, "      ST      %M{}", section.bit()).expect("a string"),
+                None => writeln!(text, "      {}", section.action("ST", spare)).expect("a string"),
             }
         }
         _ => {

@@ -8,7 +8,7 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in (0..).zip(&cx.program.objects) {
-        if uses.object.ty != Type::Bool || !uses.object.is_fixed() || uses.with_mode(Mode::is_edge).next().is_none() {
+        if !uses.has_mode(Mode::is_edge) || uses.object.ty != Type::Bool || !uses.object.is_fixed() {
             continue;
         }
         match uses.object.class {

@@ -9,7 +9,7 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in (0..).zip(&cx.program.objects) {
-        if uses.object.is_fixed() && uses.uses.iter().any(|it| it.mode == Mode::EdgeMemory) {
+        if uses.has_mode(|it| it == Mode::EdgeMemory) && uses.object.is_fixed() {
             let mut all = uses.uses.clone();
             for &other in cx.neighbours(at) {
                 let other = &cx.program.objects[other as usize];

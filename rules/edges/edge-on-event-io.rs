@@ -17,7 +17,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let first = uses.uses.iter().find(|it| event(it).is_some() && (!is_output || it.mode.writes()));
         exchanged.extend(first.into_iter().flat_map(|it| Group::all_of(uses.object).map(|g| (g, uses.object, *it))));
     }
-    for uses in program.objects.iter().filter(|it| it.object.ty == Type::Bool) {
+    for uses in program.objects.iter().filter(|it| it.has_mode(Mode::is_edge) && it.object.ty == Type::Bool) {
         let in_task =
             |it: &&GlobalUse<'_>| program.tasks(it.unit).any(|it| matches!(it, Context::Cyclic | Context::Fast));
         let Some(edge) = uses.with_mode(Mode::is_edge).find(in_task) else { continue };

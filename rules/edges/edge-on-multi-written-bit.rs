@@ -10,7 +10,7 @@ use crate::model::unit::Mode;
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in (0..).zip(&cx.program.objects) {
         // Set and reset are E001's affair.
-        let stored = uses.uses.iter().any(|it| matches!(it.mode, Mode::Set | Mode::Reset));
+        let stored = uses.has_mode(|it| matches!(it, Mode::Set | Mode::Reset));
         let Some(edge) = uses.with_mode(Mode::is_edge).next().filter(|_| !stored) else { continue };
         if uses.object.ty != Type::Bool || !uses.object.is_fixed() {
             continue;

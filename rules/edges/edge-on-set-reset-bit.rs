@@ -6,7 +6,7 @@ use crate::lint::{ProgramCx, Sink};
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for uses in cx.program.objects.iter().filter(|it| it.object.is_fixed()) {
+    for uses in cx.program.objects.iter().filter(|it| it.has_mode(Mode::is_edge) && it.object.is_fixed()) {
         let mut edges = uses.with_mode(Mode::is_edge);
         let drives: Vec<&GlobalUse<'_>> = uses.with_mode(|it| matches!(it, Mode::Set | Mode::Reset)).collect();
         let (Some(edge), [_, ..]) = (edges.next(), drives.as_slice()) else { continue };

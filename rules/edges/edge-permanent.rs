@@ -2,10 +2,11 @@
 
 use crate::analysis::{Site, edges};
 use crate::lint::{ProgramCx, Sink};
+use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in (0..).zip(&cx.program.objects) {
-        if !uses.uses.iter().any(|it| it.mode.is_edge()) {
+        if !uses.has_mode(Mode::is_edge) {
             continue;
         }
         let Some((edge, write)) = edges::permanent(cx.program, uses, cx.neighbours(at)) else { continue };

@@ -15,7 +15,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 found.push((name, *it));
             }
         }
-        if uses.with_mode(Mode::is_edge).next().is_some() {
+        if uses.has_mode(Mode::is_edge) {
             found.extend(edges::skipped(program, uses, cx.neighbours(at)).into_iter().map(|it| (name, it)));
         }
     }

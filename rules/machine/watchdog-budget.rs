@@ -16,21 +16,24 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if total <= u64::from(limit.value) * 1_000_000 {
         return;
     }
-    let Some(&(first, _)) = scan.units.first() else { return };
+    let Some(first) = scan.units.first() else { return };
     let message = format!(
         "a scan may take {} on a {}, and the watchdog stops the program after {} ms",
         milliseconds(total),
         controller.name,
         limit.value
     );
-    let part = |&(unit, time): &(u32, u64)| {
-        let name = cost::name_of(cx.program.entity(unit));
-        (ProgramIndex::heading(unit), format!("{} of it: {name}", milliseconds(time)))
+    let share = |&(unit, time): &(u32, u64)| {
+        format!("{} of it: {}", milliseconds(time), cost::name_of(cx.program.entity(unit)))
     };
-    let parts: Vec<_> =
-        if scan.units.len() > 1 { scan.units.iter().take(MAX_SHOWN).map(part).collect() } else { Vec::new() };
-    sink.report(ProgramIndex::heading(first), message)
-        .related_all(parts)
+    // The largest parts, in the order of execution.
+    let mut others: Vec<&(u32, u64)> = scan.units.iter().skip(1).collect();
+    others.sort_by_key(|it| std::cmp::Reverse(it.1));
+    others.truncate(MAX_SHOWN);
+    others.sort_by_key(|it| cx.program.order[it.0 as usize]);
+    sink.report(ProgramIndex::heading(first.0), message)
+        .label(share(first))
+        .related_all(others.into_iter().map(|it| (ProgramIndex::heading(it.0), share(it))))
         .note(format!(
             "estimated from PL72:1898-1972: {} of code with all its blocks active and all its operations fed, {} of the \
              system",

@@ -18,7 +18,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             // Code that goes by a symbol with two objects is resolved to neither.
             let by_name = Footprint::new(Area::Symbol(key(&symbol.name)), 0, 1);
             let Some(object) = symbol.object.as_ref() else { continue };
-            if used.covers(&object.footprint) || used.covers(&by_name) {
+            let raises = cx.settings.events().iter().filter_map(|it| it.trigger.as_ref());
+            let is_trigger = raises.into_iter().any(|it| it.0.footprint.overlaps(&object.footprint));
+            if is_trigger || used.covers(&object.footprint) || used.covers(&by_name) {
                 continue;
             }
             let message = format!("the program does not use `{}`, the symbol of `{}`", symbol.name, object.text);

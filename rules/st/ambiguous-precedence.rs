@@ -11,7 +11,7 @@ use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, UnaryOp};
 const LONGEST_SHOWN: usize = 200;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for &(parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
+    for (parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
         let Some((expr, op)) = BinExpr::cast(expr).and_then(|it| Some((it, it.op()?))) else { continue };
         if !op.is_logical() {
             negated_operand(cx, sink, expr, op);

@@ -13,24 +13,29 @@ use crate::syntax::{AstNode as _, Language, SyntaxKind};
 const SYSTEM_TABLE: std::ops::RangeInclusive<u32> = 50..=53;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if matches!(cx.model.language, Language::Awl(_)) {
+    let is_awl = matches!(cx.model.language, Language::Awl(_));
+    if is_awl || !cx.model.objects.iter().any(|it| it.ty.is_table()) {
         return;
     }
     places(cx, sink);
     for statement in cx.nodes(SyntaxKind::AssignStmt).filter_map(AssignStmt::cast) {
         let (Some(target), Some(value)) = (statement.target(), statement.value()) else { continue };
-        let Some((a, b)) = cx.kinds().type_of(target).zip(shape(cx, value)) else { continue };
+        let Some(a) = cx.kinds().type_of(target) else { continue };
+        if !a.is_table() && !matches!(value, Expr::Object(_) | Expr::Paren(_)) {
+            continue;
+        }
+        let Some(b) = shape(cx, value) else { continue };
         let whole = statement.syntax().text_range();
         match (a.is_table(), b.is_table()) {
             (true, true) => pair(cx, sink, whole, a, b),
             (true, false) => bits(sink, whole, a, b),
-            (false, true) if matches!(value, Expr::Object(_) | Expr::Paren(_)) => bits(sink, whole, b, a),
-            _ => {}
+            (false, true) => bits(sink, whole, b, a),
+            (false, false) => {}
         }
     }
     for expr in cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast) {
-        let sides = [expr.lhs(), expr.rhs()].map(|it| it.and_then(|it| cx.kinds().type_of(it)));
-        if let [Some(a), Some(b)] = sides.map(|it| it.filter(|it| it.is_table())) {
+        let Some(a) = table(cx, expr.lhs()) else { continue };
+        if let Some(b) = table(cx, expr.rhs()) {
             pair(cx, sink, expr.syntax().text_range(), a, b);
         }
     }
@@ -41,6 +46,10 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             pair(cx, sink, call.syntax().text_range(), *a, *b);
         }
     }
+}
+
+fn table<'a>(cx: &UnitCx<'a>, expr: Option<Expr<'a>>) -> Option<Type> {
+    cx.kinds().type_of(expr?).filter(|it| it.is_table())
 }
 
 /// Whether a function compares or combines two tables, element by element.

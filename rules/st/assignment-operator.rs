@@ -17,7 +17,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         let target = target.map_or("", |it| cx.text_of(it.syntax().text_range()));
         exchange(sink, operator, ":=", format!("`=` compares, and `{target}` is to be assigned"));
     }
-    for &(parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
+    for (parent, expr) in cx.nodes_in(SyntaxKind::BinExpr) {
         let Some(expr) = BinExpr::cast(expr) else { continue };
         // `Motor(START := %M0)` names a parameter: no condition, whatever else is wrong with it.
         if expr.op() == Some(BinOp::Assign)

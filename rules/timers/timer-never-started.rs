@@ -14,7 +14,6 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !program.complete {
         return;
     }
-    let (writes, reads) = (!program.writes_indirectly(), !program.reads_indirectly());
     // The items of one block stand together: objects are in the order of their addresses.
     let same = |a: &ObjectUses<'_>, b: &ObjectUses<'_>| match &a.object.footprint.area {
         Area::Block(..) => a.object.footprint.area == b.object.footprint.area,
@@ -22,6 +21,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     };
     for items in program.objects.chunk_by(same) {
         let Some(kind) = kind(items[0].object) else { continue };
+        let area = &items[0].object.footprint.area;
+        let (writes, reads) = (!program.writes_indirectly(area), !program.reads_indirectly(area));
         let mut uses: Vec<GlobalUse<'_>> = items.iter().flat_map(|it| it.uses.iter().copied()).collect();
         drives::in_order(program, &mut uses);
         // What a call or a store does to it is not known.

@@ -9,7 +9,8 @@ use crate::model::unit::{Mode, Pin};
 const PINS: [Pin; 7] = [Pin::Start, Pin::Preset, Pin::Up, Pin::Down, Pin::Store, Pin::Retrieve, Pin::Advance];
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for uses in cx.program.objects.iter().filter(|it| it.object.is_fixed()) {
+    let is_drive = |it: Mode| matches!(it, Mode::Drive(_));
+    for uses in cx.program.objects.iter().filter(|it| it.has_mode(is_drive) && it.object.is_fixed()) {
         for pin in PINS {
             let mut places: Vec<GlobalUse<'_>> =
                 uses.with_mode(|it| it == Mode::Drive(pin)).filter(|it| counts(cx, it, pin)).copied().collect();

@@ -9,19 +9,20 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in (0..).zip(&cx.program.objects) {
+        let is_stored = |it: Mode| matches!(it, Mode::Set | Mode::Reset);
+        if !uses.has_mode(is_stored) {
+            continue;
+        }
         let is_bit = uses.object.ty == Type::Bool || uses.object.class == Class::Symbol;
-        let is_block = uses.uses.iter().any(|it| matches!(it.mode, Mode::Drive(_)));
+        let is_block = uses.has_mode(|it| matches!(it, Mode::Drive(_)));
         let driven = matches!(uses.object.class, Class::Output | Class::Memory | Class::Data | Class::Symbol);
         // The open data block may be another one at each place.
         let known = uses.object.is_fixed() && uses.object.footprint.area != Area::OpenData;
         if !is_bit || is_block || !driven || !known {
             continue;
         }
-        let stored = |it: &GlobalUse<'_>| matches!(it.mode, Mode::Set | Mode::Reset);
-        let mut writes: Vec<GlobalUse<'_>> = uses.uses.iter().filter(|it| stored(it)).copied().collect();
-        if writes.is_empty() {
-            continue;
-        }
+        let stored = |it: &GlobalUse<'_>| is_stored(it.mode);
+        let mut writes: Vec<GlobalUse<'_>> = uses.with_mode(is_stored).copied().collect();
         // A constant, and a circuit that holds itself, store the bit as set and reset do.
         writes.extend(uses.with_mode(Mode::assigns).filter(|it| it.it.constant.is_none() && !it.it.holds));
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));

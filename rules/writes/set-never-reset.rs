@@ -1,14 +1,14 @@
 //! W003: a bit that is set and never reset, or reset and never set.
 
 use crate::analysis::Site;
-use crate::analysis::program::{GlobalUse, ObjectUses};
+use crate::analysis::program::{Context, GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Severity, Sink};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     // What is not there can only be missed in a whole program of which every place is known.
-    if !cx.program.complete || cx.program.writes_indirectly() {
+    if !cx.program.complete {
         return;
     }
     let hidden = Hidden::new(cx);
@@ -25,8 +25,12 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         // A memory bit that nothing reads is O007's affair.
         let unread = class == Class::Memory && !is_read(cx, at, uses);
         let constant_one = missing == Mode::Reset
-            && sets.iter().any(|it| it.it.own || !it.it.conditional || cx.program.is_startup(it.unit));
-        if unread || constant_one || is_written_otherwise(cx, at, uses) || hidden.may_hold(class, missing) {
+            && sets.iter().any(|it| {
+                it.it.own || cx.program.is_startup(it.unit) || !it.it.conditional && !is_in_event(cx, it.unit)
+            });
+        let is_placed = cx.program.writes_indirectly(&uses.object.footprint.area);
+        if unread || constant_one || is_placed || is_written_otherwise(cx, at, uses) || hidden.may_hold(class, missing)
+        {
             continue;
         }
         let Some((first, others)) = places.split_first() else { continue };
@@ -52,6 +56,12 @@ fn one_sided<'p, 'a>(
         (true, false) => Some((Mode::Set, resets)),
         _ => None,
     }
+}
+
+/// Whether the unit runs in events alone, each of which something raises.
+fn is_in_event(cx: &ProgramCx<'_>, unit: u32) -> bool {
+    let contexts = &cx.program.contexts[unit as usize];
+    !contexts.is_empty() && contexts.iter().all(|it| matches!(it, Context::Event(_)))
 }
 
 fn is_read(cx: &ProgramCx<'_>, at: u32, uses: &ObjectUses<'_>) -> bool {

@@ -12,14 +12,14 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let is_bit = match uses.object.class {
             Class::Output | Class::Memory => uses.object.ty == Type::Bool,
             // Only bits are assigned conditions.
-            Class::Symbol => uses.uses.iter().any(|it| matches!(it.mode, Mode::Assign | Mode::AssignNot)),
+            Class::Symbol => uses.has_mode(|it| matches!(it, Mode::Assign | Mode::AssignNot)),
             _ => false,
         };
         if !is_bit {
             continue;
         }
         // Mixed driving is W002's affair, a bit with an edge E002's, and a scratch value is nobody else's.
-        let others = uses.uses.iter().any(|it| matches!(it.mode, Mode::Set | Mode::Reset) || it.mode.is_edge());
+        let others = uses.has_mode(|it| matches!(it, Mode::Set | Mode::Reset) || it.is_edge());
         if others || !uses.object.is_fixed() || uses.is_scratch() {
             continue;
         }
@@ -32,7 +32,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
-        if let Some((second, others)) = drives::conflict(cx.program, &writes, drives::override_each_other) {
+        let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
+            drives::override_each_other(a, b) && !drives::of_one_instance(cx.program, a, b)
+        };
+        if let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))
                 .label("assigned here too, which overrides the other")
                 .related_all(others.iter().map(|it| (it.site(), format!("also {} here", it.mode.verb()))));

@@ -1,5 +1,7 @@
 //! W005: an object that code of two tasks writes.
 
+use rustc_hash::FxHashSet;
+
 use crate::analysis::Site;
 use crate::analysis::drives;
 use crate::analysis::program::GlobalUse;
@@ -12,7 +14,11 @@ const MAX_COMPARED: usize = 256;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    for uses in program.objects.iter().filter(|it| is_the_programs(it.object)) {
+    let tasks: FxHashSet<_> = (0..).zip(&program.units).flat_map(|(unit, _)| program.tasks(unit)).collect();
+    if tasks.len() < 2 {
+        return;
+    }
+    for uses in program.objects.iter().filter(|it| it.is_written() && is_the_programs(it.object)) {
         let mut writes: Vec<GlobalUse<'_>> = uses.uses.iter().filter(|it| computes(it)).copied().collect();
         if writes.len() < 2 {
             continue;

@@ -1,27 +1,24 @@
 //! W004: a write to an object that a program cannot write.
 
-use rowan::TextRange;
-
-use crate::lint::{Sink, UnitCx};
+use crate::analysis::Site;
+use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Class, Object, Rights};
-use crate::model::unit::{Access, Mode};
+use crate::model::unit::Mode;
 
-pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for access in &cx.model.accesses {
-        let object = cx.model.object(access.object);
-        let Some((what, source)) = forbidden(object, access) else { continue };
-        let place = cx.model.place(access.anchor);
-        sink.report(place, format!("`{}` is {what}, which a program cannot write", object.text))
-            .note(format!("not writable according to {source}"));
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    // A call that is given an object need not write it, and a pin of a block is made to be driven.
+    let is_write = |mode: Mode| mode.writes() && mode != Mode::InOut;
+    for uses in &cx.program.objects {
+        let Some((what, source)) = forbidden(uses.object) else { continue };
+        for it in uses.with_mode(is_write).filter(|it| it.it.parameter.is_none()) {
+            sink.report(it.site(), format!("`{}` is {what}, which a program cannot write", cx.program.text_of(it)))
+                .note(format!("not writable according to {source}"));
+        }
     }
 }
 
-/// What the object is and who says that it is not writable; `None` when the access writes nothing or may write.
-fn forbidden(object: &Object, access: &Access) -> Option<(&'static str, &'static str)> {
-    // A call that is given an object need not write it, and a pin of a block is made to be driven.
-    if !access.mode.writes() || access.mode == Mode::InOut {
-        return None;
-    }
+/// What the object is and who says that it is not writable.
+fn forbidden(object: &Object) -> Option<(&'static str, &'static str)> {
     match (object.rights, object.class) {
         // Who may write a step is said by the rules about charts.
         (_, Class::Step | Class::MacroStep) => None,

@@ -5,8 +5,6 @@
 //! of one term with constants agree with some value of the term. Small conditions are decided by a truth table in
 //! machine words; beyond [`MAX_ATOMS`] the answer is "not decided".
 
-use rustc_hash::FxHashMap;
-
 use crate::model::expr::{Comparison, Expr, ExprId, Exprs};
 
 /// Truth tables have at most 2^12 rows, 64 machine words.
@@ -57,10 +55,12 @@ pub fn together(exprs: &Exprs, conditions: &[ExprId]) -> Verdict {
     if are_free(exprs, &conjuncts) {
         return Verdict::Possible;
     }
-    match Table::new(exprs, &conjuncts) {
-        Some(table) => table.decide(exprs, &conjuncts),
-        None => Verdict::NotDecided,
+    let Some(table) = Table::new(exprs, &conjuncts) else { return Verdict::NotDecided };
+    let mut rows = table.lawful();
+    for &it in &conjuncts {
+        and(&mut rows, table.value(it));
     }
+    verdict(&rows)
 }
 
 /// Whether conjuncts, none of which is another's complement, are bits, their absences, and comparisons of different
@@ -90,17 +90,16 @@ pub fn without(exprs: &Exprs, given: &[ExprId], others: &[[ExprId; 2]]) -> Verdi
     }
     let all: Vec<ExprId> = given.iter().chain(others.iter().flatten()).copied().collect();
     let Some(table) = Table::new(exprs, &all) else { return Verdict::NotDecided };
-    let mut known = FxHashMap::default();
-    let mut rows = table.lawful(exprs);
+    let mut rows = table.lawful();
     for &it in given {
-        let value = table.evaluate(exprs, it, &mut known);
-        rows.iter_mut().zip(value).for_each(|(row, value)| *row &= value);
+        and(&mut rows, table.value(it));
     }
     for &[a, b] in others {
-        let (a, b) = (table.evaluate(exprs, a, &mut known), table.evaluate(exprs, b, &mut known));
-        rows.iter_mut().zip(a).zip(b).for_each(|((row, a), b)| *row &= !(a & b));
+        for ((row, a), b) in rows.iter_mut().zip(table.value(a)).zip(table.value(b)) {
+            *row &= !(a & b);
+        }
     }
-    if rows.iter().any(|&it| it != 0) { Verdict::Possible } else { Verdict::Never }
+    verdict(&rows)
 }
 
 /// Whether two conditions surely never hold at once.
@@ -119,16 +118,17 @@ pub fn constant(exprs: &mut Exprs, condition: ExprId) -> Option<bool> {
 
 /// The conjuncts of a condition, at most 256 of them looked into.
 fn spread(exprs: &Exprs, condition: ExprId, out: &mut Vec<ExprId>) {
-    let mut stack = vec![condition];
+    let mut at = out.len();
     let mut budget = 256;
-    while let Some(id) = stack.pop() {
+    out.push(condition);
+    while let Some(&id) = out.get(at) {
         match exprs.get(id) {
             &Expr::And(a, b) if budget > 0 => {
                 budget -= 1;
-                stack.push(b);
-                stack.push(a);
+                out[at] = a;
+                out.push(b);
             }
-            _ => out.push(id),
+            _ => at += 1,
         }
     }
 }
@@ -136,215 +136,205 @@ fn spread(exprs: &Exprs, condition: ExprId, out: &mut Vec<ExprId>) {
 /// An atom that compares a term: its number, the comparison, the constant if it is one, and whether that is whole.
 type Compared = (usize, Comparison, Option<f64>, bool);
 
-/// A truth table: one bit a row, `rows` of them.
-type Bits = Vec<u64>;
+/// What atoms compare: a term with constants, or two terms with one another, the first the smaller.
+type Term = (ExprId, Option<ExprId>);
 
-struct Table {
-    atoms: FxHashMap<ExprId, usize>,
-    order: Vec<ExprId>,
-    words: usize,
-    rows: usize,
+fn and(rows: &mut [u64], other: &[u64]) {
+    rows.iter_mut().zip(other).for_each(|(row, other)| *row &= other);
 }
 
-impl Table {
+fn verdict(rows: &[u64]) -> Verdict {
+    if rows.iter().any(|&it| it != 0) { Verdict::Possible } else { Verdict::Never }
+}
+
+/// A truth table: for each node of the conditions the rows in which it is true, one bit a row.
+struct Table<'e> {
+    exprs: &'e Exprs,
+    /// Sorted. Ids grow from operands to what they are operands of, so that this is an order to evaluate in.
+    nodes: Vec<ExprId>,
+    atoms: Vec<ExprId>,
+    /// Machine words of a column.
+    words: usize,
+    /// All rows there are: the column of TRUE.
+    full: Vec<u64>,
+    /// The columns of the nodes, one behind the other.
+    columns: Vec<u64>,
+}
+
+impl<'e> Table<'e> {
     /// `None` when the conditions are too large to decide.
-    fn new(exprs: &Exprs, conditions: &[ExprId]) -> Option<Self> {
-        let mut atoms = FxHashMap::default();
-        let mut order = Vec::new();
-        let mut seen = rustc_hash::FxHashSet::default();
-        let mut stack = conditions.to_vec();
-        while let Some(id) = stack.pop() {
-            if !seen.insert(id) {
-                continue;
-            }
-            if seen.len() > MAX_NODES {
-                return None;
-            }
-            match *exprs.get(id) {
-                Expr::Bool(_) => {}
-                Expr::Not(a) => stack.push(a),
-                Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) => stack.extend([a, b]),
-                _ => {
-                    atoms.insert(id, order.len());
-                    order.push(id);
-                    // An edge says something of its bit.
-                    if let Expr::Edge { object, version, .. } = *exprs.get(id)
-                        && let Some(bit) = exprs.find_read(object, version)
-                    {
-                        stack.push(bit);
-                    }
-                    if order.len() > MAX_ATOMS {
-                        return None;
-                    }
-                }
-            }
+    fn new(exprs: &'e Exprs, conditions: &[ExprId]) -> Option<Self> {
+        let (nodes, atoms) = nodes_and_atoms(exprs, conditions)?;
+        let rows = 1_usize << atoms.len();
+        let words = rows.div_ceil(64);
+        let mut full = vec![u64::MAX; words];
+        if rows < 64 {
+            full[0] = (1 << rows) - 1;
         }
-        let rows = 1_usize << order.len();
-        Some(Self { atoms, order, words: rows.div_ceil(64), rows })
-    }
-
-    fn constant(&self, value: bool) -> Bits {
-        let mut bits = vec![if value { u64::MAX } else { 0 }; self.words];
-        if value && self.rows < 64 {
-            bits[0] = (1 << self.rows) - 1;
+        let columns = vec![0; words * nodes.len()];
+        let mut table = Self { exprs, nodes, atoms, words, full, columns };
+        for at in 0..table.nodes.len() {
+            table.fill(at);
         }
-        bits
+        Some(table)
     }
 
-    /// Rows in which the n-th atom is true.
-    fn atom(&self, n: usize) -> Bits {
-        const PATTERN: [u64; 6] = [
-            0xAAAA_AAAA_AAAA_AAAA,
-            0xCCCC_CCCC_CCCC_CCCC,
-            0xF0F0_F0F0_F0F0_F0F0,
-            0xFF00_FF00_FF00_FF00,
-            0xFFFF_0000_FFFF_0000,
-            0xFFFF_FFFF_0000_0000,
-        ];
-        let full = self.constant(true);
-        (0..self.words)
-            .map(|word| match PATTERN.get(n) {
-                Some(pattern) => pattern & full[word],
-                None if word >> (n - 6) & 1 == 1 => u64::MAX,
-                None => 0,
-            })
-            .collect()
-    }
-
-    fn decide(&self, exprs: &Exprs, conditions: &[ExprId]) -> Verdict {
-        let mut rows = self.lawful(exprs);
-        let mut known: FxHashMap<ExprId, Bits> = FxHashMap::default();
-        for &condition in conditions {
-            let value = self.evaluate(exprs, condition, &mut known);
-            for (row, word) in rows.iter_mut().zip(&value) {
-                *row &= word;
-            }
-        }
-        if rows.iter().any(|&it| it != 0) { Verdict::Possible } else { Verdict::Never }
-    }
-
-    /// Bottom-up over the expression, without recursion.
-    fn evaluate(&self, exprs: &Exprs, root: ExprId, known: &mut FxHashMap<ExprId, Bits>) -> Bits {
-        let mut stack = vec![(root, false)];
-        while let Some((id, ready)) = stack.pop() {
-            if known.contains_key(&id) {
-                continue;
-            }
-            let value = if let Some(&n) = self.atoms.get(&id) {
-                Some(self.atom(n))
-            } else {
-                match *exprs.get(id) {
-                    Expr::Bool(value) => Some(self.constant(value)),
-                    Expr::Not(a) => {
-                        stack.extend((!ready).then_some((id, true)));
-                        stack.extend((!ready).then_some((a, false)));
-                        known.get(&a).filter(|_| ready).map(|a| {
-                            let full = self.constant(true);
-                            a.iter().zip(full).map(|(x, full)| !x & full).collect()
-                        })
-                    }
-                    Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) => {
-                        if !ready {
-                            stack.extend([(id, true), (a, false), (b, false)]);
+    fn fill(&mut self, at: usize) {
+        let column = |nodes: &[ExprId], id: ExprId| nodes.binary_search(&id).map_or(0, |it| it * self.words);
+        let (before, rest) = self.columns.split_at_mut(at * self.words);
+        let id = self.nodes[at];
+        for (word, row) in rest.iter_mut().take(self.words).enumerate() {
+            let operand = |id: ExprId| before.get(column(&self.nodes, id) + word).copied().unwrap_or_default();
+            *row = self.full[word]
+                & match *self.exprs.get(id) {
+                    Expr::Bool(value) => {
+                        if value {
+                            u64::MAX
+                        } else {
+                            0
                         }
-                        known.get(&a).zip(known.get(&b)).filter(|_| ready).map(|(a, b)| {
-                            let pairs = a.iter().zip(b);
-                            match exprs.get(id) {
-                                Expr::And(..) => pairs.map(|(x, y)| x & y).collect(),
-                                Expr::Or(..) => pairs.map(|(x, y)| x | y).collect(),
-                                _ => pairs.map(|(x, y)| x ^ y).collect(),
-                            }
-                        })
                     }
-                    _ => Some(self.constant(true)),
-                }
-            };
-            if let Some(value) = value {
-                known.insert(id, value);
-            }
+                    Expr::Not(a) => !operand(a),
+                    Expr::And(a, b) => operand(a) & operand(b),
+                    Expr::Or(a, b) => operand(a) | operand(b),
+                    Expr::Xor(a, b) => operand(a) ^ operand(b),
+                    _ => self.atoms.iter().position(|it| *it == id).map_or(0, |n| atom(n, word)),
+                };
         }
-        known.get(&root).cloned().unwrap_or_else(|| self.constant(true))
+    }
+
+    /// Rows in which a node is true.
+    fn value(&self, id: ExprId) -> &[u64] {
+        match self.nodes.binary_search(&id) {
+            Ok(at) => &self.columns[at * self.words..(at + 1) * self.words],
+            Err(_) => &self.full,
+        }
     }
 
     /// Rows that the laws between atoms allow.
-    fn lawful(&self, exprs: &Exprs) -> Bits {
-        let mut rows = self.constant(true);
-        let full = self.constant(true);
-        let mut forbid = |literals: &[(usize, bool)]| {
-            let mut bad = full.clone();
-            for &(n, value) in literals {
-                for (word, atom) in bad.iter_mut().zip(self.atom(n)) {
-                    *word &= if value { atom } else { !atom };
-                }
-            }
-            for (row, bad) in rows.iter_mut().zip(bad) {
-                *row &= !bad;
+    fn lawful(&self) -> Vec<u64> {
+        let mut rows = self.full.clone();
+        let mut forbid = |literals: [(usize, bool); 2]| {
+            for (word, row) in rows.iter_mut().enumerate() {
+                let holds = |(n, value): (usize, bool)| if value { atom(n, word) } else { !atom(n, word) };
+                *row &= !(holds(literals[0]) & holds(literals[1]));
             }
         };
-        for (n, &id) in self.order.iter().enumerate() {
-            if let Expr::Edge { object, version, rising } = *exprs.get(id) {
-                if let Some(&bit) = exprs.find_read(object, version).as_ref().and_then(|it| self.atoms.get(it)) {
-                    forbid(&[(n, true), (bit, !rising)]);
+        let number_of = |id: ExprId| self.atoms.iter().position(|it| *it == id);
+        let mut terms: Vec<(Term, Compared)> = Vec::new();
+        for (n, &id) in self.atoms.iter().enumerate() {
+            match *self.exprs.get(id) {
+                Expr::Edge { object, version, rising } => {
+                    if let Some(bit) = self.exprs.find_read(object, version).and_then(number_of) {
+                        forbid([(n, true), (bit, !rising)]);
+                    }
+                    let other = Expr::Edge { object, version, rising: !rising };
+                    if let Some(other) = self.atoms.iter().position(|&it| *self.exprs.get(it) == other) {
+                        forbid([(n, true), (other, true)]);
+                    }
                 }
-                let other = Expr::Edge { object, version, rising: !rising };
-                if let Some(other) = self.order.iter().position(|&it| *exprs.get(it) == other) {
-                    forbid(&[(n, true), (other, true)]);
-                }
+                Expr::Compare(op, a, b) => terms.extend(compared(self.exprs, n, op, a, b)),
+                _ => {}
             }
         }
-        for law in self.orders(exprs) {
-            for (row, law) in rows.iter_mut().zip(law) {
-                *row &= law;
-            }
+        terms.sort_by_key(|it| it.0);
+        for atoms in terms.chunk_by(|a, b| a.0 == b.0).filter(|it| it.len() > 1) {
+            self.obey_order(&mut rows, atoms);
         }
         rows
     }
 
-    /// For each term compared with constants or with one other term: the rows that some value of it explains.
-    fn orders(&self, exprs: &Exprs) -> Vec<Bits> {
-        let mut terms: FxHashMap<(ExprId, Option<ExprId>), Vec<Compared>> = FxHashMap::default();
-        for (n, &id) in self.order.iter().enumerate() {
-            let Expr::Compare(op, a, b) = *exprs.get(id) else { continue };
-            match (number(exprs, a), number(exprs, b)) {
-                (None, Some(value)) => {
-                    let whole = matches!(exprs.get(b), Expr::Int(_));
-                    terms.entry((a, None)).or_default().push((n, op, Some(value), whole));
-                }
-                (Some(value), None) => {
-                    let whole = matches!(exprs.get(a), Expr::Int(_));
-                    terms.entry((b, None)).or_default().push((n, op.mirrored(), Some(value), whole));
-                }
-                (None, None) if a <= b => terms.entry((a, Some(b))).or_default().push((n, op, None, true)),
-                (None, None) => terms.entry((b, Some(a))).or_default().push((n, op.mirrored(), None, true)),
-                (Some(_), Some(_)) => {}
-            }
-        }
-        let mut laws = Vec::new();
-        for ((_, other), atoms) in &terms {
-            let samples: Vec<f64> = if other.is_some() {
-                vec![-1.0, 0.0, 1.0]
-            } else {
-                let mut constants: Vec<f64> = atoms.iter().filter_map(|it| it.2).collect();
-                constants.sort_by(f64::total_cmp);
-                constants.dedup();
-                samples_around(&constants, atoms.iter().all(|it| it.3))
-            };
-            let mut law = self.constant(false);
-            for sample in samples {
-                let mut row = self.constant(true);
-                for &(n, op, constant, _) in atoms {
+    /// Keeps the rows in which some value of the term explains what its comparisons give.
+    fn obey_order(&self, rows: &mut [u64], atoms: &[(Term, Compared)]) {
+        let samples: Vec<f64> = if atoms.iter().any(|it| it.0.1.is_some()) {
+            vec![-1.0, 0.0, 1.0]
+        } else {
+            let mut constants: Vec<f64> = atoms.iter().filter_map(|it| it.1.2).collect();
+            constants.sort_by(f64::total_cmp);
+            constants.dedup();
+            samples_around(&constants, atoms.iter().all(|it| it.1.3))
+        };
+        for (word, row) in rows.iter_mut().enumerate() {
+            let explained = |&sample: &f64| {
+                atoms.iter().fold(u64::MAX, |row, &(_, (n, op, constant, _))| {
                     let holds = sample.partial_cmp(&constant.unwrap_or(0.0)).is_some_and(|it| op.holds(it));
-                    for (word, atom) in row.iter_mut().zip(self.atom(n)) {
-                        *word &= if holds { atom } else { !atom };
-                    }
+                    row & if holds { atom(n, word) } else { !atom(n, word) }
+                })
+            };
+            *row &= samples.iter().map(explained).fold(0, |law, row| law | row);
+        }
+    }
+}
+
+/// What conditions are made of, sorted, and the atoms among it; `None` when that is too much.
+fn nodes_and_atoms(exprs: &Exprs, conditions: &[ExprId]) -> Option<(Vec<ExprId>, Vec<ExprId>)> {
+    /// Fewer than these are looked through, more are hashed.
+    const FEW: usize = 48;
+    let (mut nodes, mut atoms) = (Vec::new(), Vec::new());
+    let mut many = rustc_hash::FxHashSet::default();
+    let mut stack = conditions.to_vec();
+    while let Some(id) = stack.pop() {
+        let is_new = if nodes.len() < FEW {
+            !nodes.contains(&id)
+        } else {
+            if many.is_empty() {
+                many.extend(nodes.iter().copied());
+            }
+            many.insert(id)
+        };
+        if !is_new {
+            continue;
+        }
+        nodes.push(id);
+        if nodes.len() > MAX_NODES {
+            return None;
+        }
+        match *exprs.get(id) {
+            Expr::Bool(_) => {}
+            Expr::Not(a) => stack.push(a),
+            Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) => stack.extend([a, b]),
+            _ => {
+                atoms.push(id);
+                // An edge says something of its bit.
+                if let Expr::Edge { object, version, .. } = *exprs.get(id) {
+                    stack.extend(exprs.find_read(object, version));
                 }
-                for (word, row) in law.iter_mut().zip(row) {
-                    *word |= row;
+                if atoms.len() > MAX_ATOMS {
+                    return None;
                 }
             }
-            laws.push(law);
         }
-        laws
+    }
+    nodes.sort_unstable();
+    Some((nodes, atoms))
+}
+
+/// Rows in which the n-th atom is true: a word of its column.
+fn atom(n: usize, word: usize) -> u64 {
+    const PATTERN: [u64; 6] = [
+        0xAAAA_AAAA_AAAA_AAAA,
+        0xCCCC_CCCC_CCCC_CCCC,
+        0xF0F0_F0F0_F0F0_F0F0,
+        0xFF00_FF00_FF00_FF00,
+        0xFFFF_0000_FFFF_0000,
+        0xFFFF_FFFF_0000_0000,
+    ];
+    match PATTERN.get(n) {
+        Some(pattern) => *pattern,
+        None if word >> (n - 6) & 1 == 1 => u64::MAX,
+        None => 0,
+    }
+}
+
+/// What an atom says of a term; `None` when it compares two constants.
+fn compared(exprs: &Exprs, n: usize, op: Comparison, a: ExprId, b: ExprId) -> Option<(Term, Compared)> {
+    let whole = |it: ExprId| matches!(exprs.get(it), Expr::Int(_));
+    match (number(exprs, a), number(exprs, b)) {
+        (None, Some(value)) => Some(((a, None), (n, op, Some(value), whole(b)))),
+        (Some(value), None) => Some(((b, None), (n, op.mirrored(), Some(value), whole(a)))),
+        (None, None) if a <= b => Some(((a, Some(b)), (n, op, None, true))),
+        (None, None) => Some(((b, Some(a)), (n, op.mirrored(), None, true))),
+        (Some(_), Some(_)) => None,
     }
 }
 

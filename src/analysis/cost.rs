@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::program::ProgramIndex;
 use crate::model::UnitModel;
+use crate::model::chart::StepKind;
 use crate::model::entity::{Entity, Part, Task};
 use crate::model::expr::Exprs;
 use crate::model::object::{Area, Class};
@@ -147,7 +148,7 @@ pub struct TaskCost {
 }
 
 /// The code of a task of a PL7-2 program; `None` when there is none. Of a chart, as many of the longest actions and receptivities
-/// count as there may be active steps (PL72:1413) and valid transitions (PL72:1471) at once.
+/// count as there may be active steps and valid transitions at once, see [`situation`].
 pub fn task(program: &ProgramIndex<'_>, task: Task, series: Series) -> Option<TaskCost> {
     let mut sum = TaskCost::default();
     let mut parts: FxHashMap<u32, u64> = FxHashMap::default();
@@ -165,10 +166,10 @@ pub fn task(program: &ProgramIndex<'_>, task: Task, series: Series) -> Option<Ta
             CodeKind::Receptivity => pieces[1].push((time, unit)),
         }
     }
-    for (mut pieces, most) in pieces.into_iter().zip([ACTIVE_STEPS, VALID_TRANSITIONS]) {
+    for (mut pieces, most) in pieces.into_iter().zip(situation(program)) {
         sum.has_chart |= !pieces.is_empty();
         pieces.sort_unstable_by(|a, b| b.cmp(a));
-        for (time, unit) in pieces.into_iter().take(most.value as usize) {
+        for (time, unit) in pieces.into_iter().take(most) {
             *parts.entry(unit).or_default() += time;
         }
     }
@@ -184,6 +185,25 @@ pub fn task(program: &ProgramIndex<'_>, task: Task, series: Series) -> Option<Ta
 fn pieces_of<'p>(program: &'p ProgramIndex<'_>, task: Task) -> impl Iterator<Item = (u32, &'p PieceCost)> {
     let units = (0..).zip(&program.units).filter(move |it| it.1.entity.task() == Some(task));
     units.flat_map(|(unit, facts)| facts.cost.iter().flat_map(move |it| it.pieces.iter().map(move |it| (unit, it))))
+}
+
+/// How many steps can be active at once, and how many transitions valid behind them: the initial steps, and those by which
+/// simultaneous activations go beyond what they end; never more than the controller manages (PL72:1413, PL72:1471). One of a
+/// chart that was not read. Steps that the program sets itself are not thought of.
+fn situation(program: &ProgramIndex<'_>) -> [usize; 2] {
+    let mut sum = [0, 0];
+    for chart in program.charts().iter().filter(|it| it.task == Task::Mast) {
+        let initial = chart.steps.iter().filter(|it| it.it.kind == StepKind::Initial).count();
+        let gains = chart.transitions.iter().map(|it| it.it.targets.len().saturating_sub(it.it.sources.len()));
+        let steps = initial.max(1) + gains.sum::<usize>();
+        let mut behind: FxHashMap<u32, usize> = FxHashMap::default();
+        for step in chart.transitions.iter().flat_map(|it| &it.sources) {
+            *behind.entry(*step).or_default() += 1;
+        }
+        sum[0] += steps;
+        sum[1] += steps * behind.into_values().max().unwrap_or(1);
+    }
+    [(sum[0], ACTIVE_STEPS), (sum[1], VALID_TRANSITIONS)].map(|(count, most)| count.clamp(1, most.value as usize))
 }
 
 /// Whether the program has code of the fast task.

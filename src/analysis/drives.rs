@@ -2,7 +2,7 @@
 
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::object::{Class, Type};
-use crate::model::unit::Mode;
+use crate::model::unit::{Callee, Mode};
 
 /// Stores of words and tables that write an output bit on the way, or of bit tables that write a memory bit. Stores of
 /// constants clear or preset a whole area and are left out. `neighbours`: objects that share memory with the bit.
@@ -24,6 +24,18 @@ pub fn override_each_other(a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
         (Some(x), Some(y)) => x != y && !a.it.conditional && !b.it.conditional,
         _ => true,
     }
+}
+
+/// Whether both are actual parameters of calls of one instance of a DFB. That it is called twice is a mistake of its own.
+pub fn of_one_instance(program: &ProgramIndex<'_>, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
+    let instance = |it: &GlobalUse<'_>| {
+        let (call, _) = it.it.parameter.as_ref()?;
+        match &program.units.get(it.unit as usize)?.calls.get(*call as usize)?.callee {
+            Callee::Instance(name) => Some(name.clone()),
+            _ => None,
+        }
+    };
+    instance(a).is_some_and(|it| instance(b) == Some(it))
 }
 
 /// Sorts places as the controller comes across them.

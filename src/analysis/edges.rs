@@ -17,8 +17,8 @@ fn lone_writes<'u, 'a>(
     let is_internal = bit.object.class == Class::Memory && bit.object.ty == Type::Bool && bit.object.is_fixed();
     let neighbour_is_written = || neighbours.iter().any(|&it| program.objects[it as usize].is_written());
     if !is_internal
-        || bit.with_mode(Mode::is_edge).next().is_none()
-        || bit.with_mode(|it| it.writes() && !it.assigns()).next().is_some()
+        || !bit.has_mode(Mode::is_edge)
+        || bit.has_mode(|it| it.writes() && !it.assigns())
         || neighbour_is_written()
         || program.is_written_by_index(&bit.object.footprint.area)
     {

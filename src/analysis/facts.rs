@@ -16,7 +16,7 @@ use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
-use crate::model::unit::{Access, Call, Callee, Mode, Section, StatementKind};
+use crate::model::unit::{Access, Call, Callee, Formal, Mode, Section, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -48,8 +48,8 @@ pub struct Use {
     pub holds: bool,
     /// Network or sentence.
     pub network: u32,
-    /// For an actual parameter: the call, an index into the unit's calls, and the name of the formal parameter.
-    pub parameter: Option<(u32, SmolStr)>,
+    /// For an actual parameter: the call, an index into the unit's calls, and the formal parameter.
+    pub parameter: Option<(u32, Formal)>,
 }
 
 /// An object of the unit with how its value is used.
@@ -231,7 +231,7 @@ impl UnitFacts {
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
                     network: statement.map_or(0, |it| it.network),
-                    parameter: access.parameter.clone().zip(called).map(|(name, call)| (call, name)),
+                    parameter: access.parameter.clone().zip(called).map(|(formal, call)| (call, formal)),
                 }
             })
             .collect();
@@ -366,7 +366,8 @@ fn by_object(model: &UnitModel, wanted: impl Fn(Mode) -> bool) -> Vec<(u32, &Acc
 
 /// Group of each access: equal for writes of one object of which at most one takes effect in a scan.
 fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
-    let drives = |it: Mode| it.assigns() || it == Mode::Store || matches!(it, Mode::Drive(_));
+    // What a call does to an actual parameter shows in the program alone.
+    let drives = |it: Mode| it.assigns() || matches!(it, Mode::Store | Mode::InOut | Mode::Drive(_));
     let writes = by_object(model, drives);
     let mut groups: Vec<u32> = (0..u32::try_from(model.accesses.len()).unwrap_or(u32::MAX)).collect();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
@@ -396,7 +397,7 @@ fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
 
 fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
     let stores = |it: Mode| matches!(it, Mode::Set | Mode::Reset | Mode::EdgeMemory);
-    let writes = by_object(model, |it| stores(it) || it.assigns());
+    let writes = by_object(model, |it| stores(it) || it.assigns() || it == Mode::InOut);
     let mut pairs = Vec::new();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
         for (at, second) in list.iter().take(MAX_COMPARED).enumerate() {

@@ -9,11 +9,11 @@ use smol_str::SmolStr;
 use super::Site;
 use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
-use crate::model::dfb::Interface;
+use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
-use crate::model::unit::{Callee, Mode, Section};
+use crate::model::unit::{Callee, Formal, Mode, Pin, Section};
 use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
@@ -76,6 +76,43 @@ impl GlobalUse<'_> {
     }
 }
 
+/// Which modes some uses have; those of all pins count as one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Modes(u16);
+
+impl Modes {
+    const ALL: [Mode; 13] = [
+        Mode::Read,
+        Mode::Rising,
+        Mode::Falling,
+        Mode::Assign,
+        Mode::AssignNot,
+        Mode::Set,
+        Mode::Reset,
+        Mode::Store,
+        Mode::Write,
+        Mode::EdgeMemory,
+        Mode::Drive(Pin::Whole),
+        Mode::InOut,
+        Mode::Output,
+    ];
+
+    fn bit(mode: Mode) -> u16 {
+        let is_same = |it: &Mode| *it == mode || matches!((it, mode), (Mode::Drive(_), Mode::Drive(_)));
+        Self::ALL.iter().position(is_same).map_or(0, |it| 1 << it)
+    }
+
+    fn insert(&mut self, mode: Mode) {
+        self.0 |= Self::bit(mode);
+    }
+
+    /// Whether one of the modes may be wanted; which pin is driven is not known here.
+    fn may_have(self, wanted: impl Fn(Mode) -> bool) -> bool {
+        let is_wanted = |it: &Mode| matches!(it, Mode::Drive(_)) || wanted(*it);
+        Self::ALL.iter().any(|it| self.0 & Self::bit(*it) != 0 && is_wanted(it))
+    }
+}
+
 /// An object with all its uses, in execution order.
 #[derive(Debug)]
 pub struct ObjectUses<'a> {
@@ -83,19 +120,26 @@ pub struct ObjectUses<'a> {
     /// Some unit computes with its value.
     pub number: bool,
     pub uses: Vec<GlobalUse<'a>>,
+    modes: Modes,
 }
 
 impl<'a> ObjectUses<'a> {
+    /// Most rules want modes that most objects have not: this costs next to nothing then.
     pub fn with_mode(&self, wanted: impl Fn(Mode) -> bool) -> impl Iterator<Item = &GlobalUse<'a>> {
-        self.uses.iter().filter(move |it| wanted(it.mode))
+        let uses = if self.modes.may_have(&wanted) { self.uses.as_slice() } else { &[] };
+        uses.iter().filter(move |it| wanted(it.mode))
+    }
+
+    pub fn has_mode(&self, wanted: impl Fn(Mode) -> bool) -> bool {
+        self.with_mode(wanted).next().is_some()
     }
 
     pub fn is_written(&self) -> bool {
-        self.uses.iter().any(|it| it.mode.writes() || matches!(it.mode, Mode::Drive(_)))
+        self.has_mode(|it| it.writes() || matches!(it, Mode::Drive(_)))
     }
 
     pub fn is_read(&self) -> bool {
-        self.uses.iter().any(|it| it.mode.reads())
+        self.has_mode(Mode::reads)
     }
 
     /// Whether every unit that uses the object writes it before it reads it: a scratch value that does not outlive the
@@ -103,8 +147,42 @@ impl<'a> ObjectUses<'a> {
     pub fn is_scratch(&self) -> bool {
         matches!(self.object.class, Class::Memory | Class::Symbol)
             && self.is_read()
-            && self.uses.iter().all(|it| !it.mode.is_edge() && it.mode != Mode::EdgeMemory)
+            && !self.has_mode(|it| it.is_edge() || it == Mode::EdgeMemory)
             && self.with_mode(Mode::reads).all(|it| !it.it.exposed)
+    }
+}
+
+/// Places computed at run time.
+#[derive(Debug)]
+struct Indirect<'a> {
+    /// By a pointer, or an index on a symbol that nothing resolves.
+    anywhere: bool,
+    /// By an index on an address, which does not lead out of its area: where it would, the controller takes 0 for it
+    /// (PL7:1134-1143).
+    areas: FxHashSet<&'a Area>,
+}
+
+impl<'a> Indirect<'a> {
+    fn new(
+        units: &[&UnitFacts],
+        objects: &[ObjectUses<'a>],
+        by_unit: impl Fn(&UnitFacts) -> bool,
+        by_object: impl Fn(&ObjectUses<'a>) -> bool,
+    ) -> Self {
+        let mut found = Self { anywhere: units.iter().any(|it| by_unit(it)), areas: FxHashSet::default() };
+        for it in objects.iter().filter(|it| !it.object.is_fixed() && by_object(it)) {
+            let area = &it.object.footprint.area;
+            found.anywhere |= matches!(area, Area::Indirect | Area::Symbol(_));
+            if it.object.indexed {
+                found.areas.insert(area);
+            }
+        }
+        found
+    }
+
+    fn may_be_in(&self, area: &Area) -> bool {
+        // What is meant by a symbol that nothing resolves may lie anywhere.
+        self.anywhere || self.areas.contains(area) || matches!(area, Area::Symbol(_)) && !self.areas.is_empty()
     }
 }
 
@@ -151,8 +229,8 @@ pub struct ProgramIndex<'a> {
     pub complete: bool,
     /// Some of the program was not read or not understood.
     pub partial: bool,
-    /// Areas in which an indexed object is written.
-    indexed: FxHashSet<&'a Area>,
+    written: Indirect<'a>,
+    read: Indirect<'a>,
     exclusive: FxHashSet<(u32, u32, u32)>,
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
@@ -188,8 +266,8 @@ impl<'a> ProgramIndex<'a> {
             .flat_map(|(unit, facts)| facts.exclusive_uses.iter().map(move |&(a, b)| (unit, a, b)))
             .collect();
         let objects = collect(&units, &order, &calls);
-        let indexed = objects.iter().filter(|it| it.object.indexed && it.is_written());
-        let indexed = indexed.map(|it| &it.object.footprint.area).collect();
+        let written = Indirect::new(&units, &objects, |it| it.writes_indirectly, ObjectUses::is_written);
+        let read = Indirect::new(&units, &objects, |it| it.reads_indirectly, ObjectUses::is_read);
         let partial = units.iter().any(|it| it.has_gaps);
         Self {
             family,
@@ -203,7 +281,8 @@ impl<'a> ProgramIndex<'a> {
             order,
             complete,
             partial,
-            indexed,
+            written,
+            read,
             exclusive,
             exclusive_uses,
             names,
@@ -283,7 +362,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether an indexed object, which may be any of its area, is written in an area.
     pub fn is_written_by_index(&self, area: &Area) -> bool {
-        self.indexed.contains(area)
+        self.written.areas.contains(area)
     }
 
     /// Whether two calls can both happen in the same scan of the same context.
@@ -343,25 +422,36 @@ impl<'a> ProgramIndex<'a> {
         self.contexts[unit as usize] == [Context::Startup]
     }
 
-    /// Whether some unit writes a place computed at run time: the absence of another write says nothing then.
-    pub fn writes_indirectly(&self) -> bool {
-        self.units.iter().any(|it| it.writes_indirectly)
-            || self.objects.iter().any(|it| !it.object.is_fixed() && it.is_written())
+    /// Whether some unit writes a place computed at run time that may lie in the area: the absence of another write says
+    /// nothing then.
+    pub fn writes_indirectly(&self, area: &Area) -> bool {
+        self.written.may_be_in(area)
     }
 
-    /// Whether some unit reads a place computed at run time.
-    pub fn reads_indirectly(&self) -> bool {
-        self.units.iter().any(|it| it.reads_indirectly)
-            || self.objects.iter().any(|it| !it.object.is_fixed() && it.is_read())
+    /// Whether some unit reads a place computed at run time that may lie in the area.
+    pub fn reads_indirectly(&self, area: &Area) -> bool {
+        self.read.may_be_in(area)
     }
 
-    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address.
+    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address. The items of an
+    /// instance of a DFB have none.
     pub fn has_unresolved(&self, wanted: impl Fn(Mode) -> bool) -> bool {
+        let is_item = |it: &ObjectUses<'_>| {
+            let instance = it.object.text.split_once('.').map(|it| UnitName::Instance(key(it.0)));
+            instance.is_some_and(|it| self.names.contains_key(&it))
+        };
         self.objects.iter().any(|it| {
             matches!(it.object.footprint.area, Area::Symbol(_))
+                && !is_item(it)
                 && !it.uses.iter().any(|it| matches!(it.mode, Mode::Drive(_)))
                 && it.uses.iter().any(|it| wanted(it.mode))
         })
+    }
+
+    /// The object of a use as its unit writes it.
+    pub fn text_of(&self, it: &GlobalUse<'_>) -> &str {
+        let objects = self.units.get(it.unit as usize).map_or(&[][..], |it| &it.objects);
+        objects.get(it.it.object as usize).map_or("", |it| it.object.text.as_str())
     }
 
     /// Heading of a unit.
@@ -615,13 +705,26 @@ fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -
 
 /// What a called block of the program does with an actual parameter.
 fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit: u32, it: &Use) -> Mode {
-    let Some((call, name)) = &it.parameter else { return it.mode };
-    let Some(&target) = targets.get(&(unit, *call)) else { return it.mode };
-    let declared = &units[target as usize].declared;
-    match declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
-        Some(Section::Input) => Mode::Read,
-        Some(Section::Output) => Mode::Output,
-        _ => it.mode,
+    let Some((call, formal)) = &it.parameter else { return it.mode };
+    let Some(target) = targets.get(&(unit, *call)).and_then(|&target| units.get(target as usize)) else {
+        return it.mode;
+    };
+    match formal {
+        Formal::Name(name) => {
+            match target.declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
+                Some(Section::Input) => Mode::Read,
+                Some(Section::Output) => Mode::Output,
+                _ => it.mode,
+            }
+        }
+        Formal::Position(position) => {
+            let mut parameters = target.interface.iter().flat_map(|it| it.parameters());
+            match parameters.nth(*position as usize).map(|it| it.role) {
+                Some(Role::Input) => Mode::Read,
+                Some(Role::Output) => Mode::Output,
+                _ => it.mode,
+            }
+        }
     }
 }
 
@@ -663,13 +766,16 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
         object: &fact.object,
         number,
         uses: Vec::with_capacity(count),
+        modes: Modes::default(),
     };
     let mut objects: Vec<ObjectUses<'a>> = firsts.iter().zip(numbers).zip(counts).map(object).collect();
     for unit in by_rank {
         for it in &units[unit as usize].uses {
             if let Some(Some(id)) = locals[unit as usize].get(it.object as usize) {
                 let mode = actual_mode(units, &targets, unit, it);
-                objects[*id as usize].uses.push(GlobalUse { unit, mode, it });
+                let object = &mut objects[*id as usize];
+                object.uses.push(GlobalUse { unit, mode, it });
+                object.modes.insert(mode);
             }
         }
     }
@@ -682,8 +788,8 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
     objects.sort_by_cached_key(|it| {
         let place = &it.object.footprint;
         let rank = ranks.get(&place.area).copied().unwrap_or(u32::MAX);
-        let address = u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits);
-        (address, it.object.ty, it.object.indexed)
+        // Those of one place stay in the order in which the program comes across them.
+        u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits)
     });
     objects
 }

@@ -13,8 +13,41 @@ use crate::model::pl7_kinds::Kinds;
 use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
 use crate::target::Target;
 
-/// Nodes with their parents.
-type NodesByKind<'a> = FxHashMap<SyntaxKind, Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>>;
+/// Nodes with their parents, in the order of the text.
+struct NodesByKind<'a> {
+    nodes: Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>,
+    /// Indices into `nodes`, those of a kind together and in order.
+    order: Vec<u32>,
+    /// Where in `order` those of each kind end; they begin where the kind before ends.
+    ends: [u32; 256],
+}
+
+impl<'a> NodesByKind<'a> {
+    fn new(nodes: Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>) -> Self {
+        let mut starts = [0_u32; 256];
+        for (_, node) in &nodes {
+            starts[node.kind() as usize] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += std::mem::replace(start, sum);
+        }
+        let mut ends = starts;
+        let mut order = vec![0; nodes.len()];
+        for (at, (_, node)) in (0..).zip(&nodes) {
+            let end = &mut ends[node.kind() as usize];
+            order[*end as usize] = at;
+            *end += 1;
+        }
+        Self { nodes, order, ends }
+    }
+
+    fn of(&self, kind: SyntaxKind) -> impl Iterator<Item = (SyntaxNode<'a>, SyntaxNode<'a>)> {
+        let start = (kind as usize).checked_sub(1).map_or(0, |it| self.ends[it] as usize);
+        let order = &self.order[start..self.ends[kind as usize] as usize];
+        order.iter().map(|it| self.nodes[*it as usize])
+    }
+}
 
 /// One unit: its model, its tree, its text. Places are ranges relative to the unit.
 pub struct UnitCx<'a> {
@@ -41,42 +74,33 @@ impl<'a> UnitCx<'a> {
     /// Every node of a kind, in the order of the text; none for objects, names, literals and instructions. The tree is
     /// walked once for all rules.
     pub fn nodes(&self, kind: SyntaxKind) -> impl Iterator<Item = SyntaxNode<'a>> {
-        self.nodes_in(kind).iter().map(|it| it.1)
+        self.nodes_in(kind).map(|it| it.1)
     }
 
     /// As [`Self::nodes`], each behind the node that it is a child of.
-    pub fn nodes_in(&self, kind: SyntaxKind) -> &[(SyntaxNode<'a>, SyntaxNode<'a>)] {
+    pub fn nodes_in(&self, kind: SyntaxKind) -> impl Iterator<Item = (SyntaxNode<'a>, SyntaxNode<'a>)> {
         let nodes = self.nodes.get_or_init(|| {
-            let mut nodes = NodesByKind::default();
             let root = self.parse.syntax();
+            let mut nodes = Vec::with_capacity(self.text.len() / 16);
             let mut open = vec![(root, root.children_with_tokens())];
             while let Some((parent, children)) = open.last_mut() {
                 let Some(child) = children.next() else {
                     open.pop();
                     continue;
                 };
-                let Some(node) = child.into_node() else { continue };
-                let kind = node.kind();
                 // Leaves are by far the most, and no rule asks for all of them.
-                let is_leaf = match kind {
+                let Some(node) = child.into_node() else { continue };
+                match node.kind() {
                     SyntaxKind::Literal => continue,
-                    SyntaxKind::ObjectRef | SyntaxKind::NameRef => {
-                        if node.children().next().is_none() {
-                            continue;
-                        }
-                        true
-                    }
-                    SyntaxKind::IlInstr | SyntaxKind::Instr => true,
-                    _ => false,
-                };
-                if !is_leaf {
-                    nodes.entry(kind).or_default().push((*parent, node));
+                    SyntaxKind::ObjectRef | SyntaxKind::NameRef if node.is_leaf() => continue,
+                    SyntaxKind::ObjectRef | SyntaxKind::NameRef | SyntaxKind::IlInstr | SyntaxKind::Instr => {}
+                    _ => nodes.push((*parent, node)),
                 }
                 open.push((node, node.children_with_tokens()));
             }
-            nodes
+            NodesByKind::new(nodes)
         });
-        nodes.get(&kind).map_or(&[], Vec::as_slice)
+        nodes.of(kind)
     }
 
     /// Whether the author left parts of the unit out (`...`), as listings in documents do.

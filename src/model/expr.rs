@@ -3,7 +3,11 @@
 //! A read carries the *version* of what it reads. Two reads of one object with equal versions give the same value,
 //! because nothing wrote the object between them.
 
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher as _;
+
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::{FxBuildHasher, FxHashSet};
 use smol_str::SmolStr;
 
 /// Index of an object in the unit's table.
@@ -117,21 +121,44 @@ pub enum Expr {
     Opaque(u32),
 }
 
+impl Expr {
+    fn operands(&self, mut each: impl FnMut(ExprId)) {
+        match self {
+            Self::Not(a) | Self::Negate(a) => each(*a),
+            Self::And(a, b) | Self::Or(a, b) | Self::Xor(a, b) | Self::Compare(_, a, b) | Self::Binary(_, a, b) => {
+                each(*a);
+                each(*b);
+            }
+            Self::Call(_, list) => list.iter().for_each(|it| each(*it)),
+            _ => {}
+        }
+    }
+}
+
 /// The expressions of one unit.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct Exprs {
     nodes: Vec<Expr>,
-    ids: FxHashMap<Expr, ExprId>,
+    ids: HashTable<ExprId>,
     opaque: u32,
+}
+
+/// A condition cut out of a unit, free of versions: what is asked of objects as they are at one moment. Its objects are
+/// those of the unit that it comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Guard {
+    /// Operands before what they are operands of; the last is the condition.
+    nodes: Box<[Expr]>,
 }
 
 impl Default for Exprs {
     fn default() -> Self {
-        let mut exprs = Self { nodes: Vec::new(), ids: FxHashMap::default(), opaque: 0 };
-        exprs.intern(Expr::Bool(false));
-        exprs.intern(Expr::Bool(true));
-        exprs
+        Self::with_capacity(0)
     }
+}
+
+fn hash(expr: &Expr) -> u64 {
+    FxBuildHasher.hash_one(expr)
 }
 
 impl Exprs {
@@ -150,14 +177,91 @@ impl Exprs {
         self.nodes.is_empty()
     }
 
+    /// Room for so many expressions.
+    pub fn with_capacity(capacity: usize) -> Self {
+        let capacity = capacity.max(2);
+        let (nodes, ids) = (Vec::with_capacity(capacity), HashTable::with_capacity(capacity));
+        let mut exprs = Self { nodes, ids, opaque: 0 };
+        exprs.intern(Expr::Bool(false));
+        exprs.intern(Expr::Bool(true));
+        exprs
+    }
+
     fn intern(&mut self, expr: Expr) -> ExprId {
-        if let Some(&id) = self.ids.get(&expr) {
-            return id;
+        let nodes = &self.nodes;
+        let id = ExprId(u32::try_from(nodes.len()).unwrap_or(u32::MAX));
+        let entry = self.ids.entry(hash(&expr), |it| nodes[it.0 as usize] == expr, |it| hash(&nodes[it.0 as usize]));
+        match entry {
+            Entry::Occupied(found) => *found.get(),
+            Entry::Vacant(entry) => {
+                entry.insert(id);
+                self.nodes.push(expr);
+                id
+            }
         }
-        let id = ExprId(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
-        self.nodes.push(expr.clone());
-        self.ids.insert(expr, id);
-        id
+    }
+
+    fn find(&self, expr: &Expr) -> Option<ExprId> {
+        self.ids.find(hash(expr), |it| self.nodes[it.0 as usize] == *expr).copied()
+    }
+
+    /// The condition with all it is made of, unless that is more than `most` expressions.
+    pub fn cut(&self, condition: ExprId, most: usize) -> Option<Guard> {
+        let mut seen = FxHashSet::default();
+        let mut stack = vec![condition];
+        while let Some(id) = stack.pop() {
+            if seen.insert(id) {
+                self.get(id).operands(|it| stack.push(it));
+            }
+            if seen.len() > most {
+                return None;
+            }
+        }
+        // Ids grow from operands to what they are operands of.
+        let mut ids: Vec<ExprId> = seen.into_iter().collect();
+        ids.sort_unstable();
+        let place = |id: ExprId| ExprId(ids.binary_search(&id).ok().and_then(|it| u32::try_from(it).ok()).unwrap_or(0));
+        let node = |id: &ExprId| match self.get(*id) {
+            Expr::Read { object, .. } => Expr::Read { object: *object, version: 0 },
+            Expr::Edge { object, rising, .. } => Expr::Edge { object: *object, version: 0, rising: *rising },
+            Expr::Not(a) => Expr::Not(place(*a)),
+            Expr::And(a, b) => Expr::And(place(*a), place(*b)),
+            Expr::Or(a, b) => Expr::Or(place(*a), place(*b)),
+            Expr::Xor(a, b) => Expr::Xor(place(*a), place(*b)),
+            Expr::Compare(op, a, b) => Expr::Compare(*op, place(*a), place(*b)),
+            Expr::Negate(a) => Expr::Negate(place(*a)),
+            Expr::Binary(op, a, b) => Expr::Binary(*op, place(*a), place(*b)),
+            Expr::Call(name, list) => Expr::Call(name.clone(), list.iter().map(|it| place(*it)).collect()),
+            other => other.clone(),
+        };
+        Some(Guard { nodes: ids.iter().map(node).collect() })
+    }
+
+    /// A condition of another unit, over objects as `object` names them here.
+    pub fn import(&mut self, guard: &Guard, object: impl Fn(ObjectId) -> ObjectId) -> ExprId {
+        let mut ids: Vec<ExprId> = Vec::with_capacity(guard.nodes.len());
+        for node in &guard.nodes {
+            let at = |it: &ExprId| ids.get(it.0 as usize).copied().unwrap_or(Self::FALSE);
+            let id = match node {
+                Expr::Read { object: it, version } => self.read(object(*it), *version),
+                Expr::Edge { object: it, version, rising } => self.edge(object(*it), *version, *rising),
+                Expr::Not(a) => self.not(at(a)),
+                Expr::And(a, b) => self.and(at(a), at(b)),
+                Expr::Or(a, b) => self.or(at(a), at(b)),
+                Expr::Xor(a, b) => self.xor(at(a), at(b)),
+                Expr::Compare(op, a, b) => self.compare(*op, at(a), at(b)),
+                Expr::Negate(a) => self.negate(at(a)),
+                Expr::Binary(op, a, b) => self.binary(*op, at(a), at(b)),
+                Expr::Call(name, list) => {
+                    let list = list.iter().map(at).collect();
+                    self.intern(Expr::Call(name.clone(), list))
+                }
+                Expr::Opaque(_) => self.opaque(),
+                constant => self.intern(constant.clone()),
+            };
+            ids.push(id);
+        }
+        ids.last().copied().unwrap_or(Self::FALSE)
     }
 
     pub fn bool(value: bool) -> ExprId {
@@ -192,7 +296,7 @@ impl Exprs {
 
     /// The plain read of an object's value, where the unit has one.
     pub fn find_read(&self, object: ObjectId, version: u32) -> Option<ExprId> {
-        self.ids.get(&Expr::Read { object, version }).copied()
+        self.find(&Expr::Read { object, version })
     }
 
     pub fn not(&mut self, a: ExprId) -> ExprId {
@@ -220,8 +324,8 @@ impl Exprs {
         match *self.get(a) {
             Expr::Bool(value) => Some(Self::bool(!value)),
             Expr::Not(inner) => Some(inner),
-            Expr::Compare(op, x, y) => self.ids.get(&Expr::Compare(op.negated(), x, y)).copied(),
-            _ => self.ids.get(&Expr::Not(a)).copied(),
+            Expr::Compare(op, x, y) => self.find(&Expr::Compare(op.negated(), x, y)),
+            _ => self.find(&Expr::Not(a)),
         }
     }
 

@@ -7,6 +7,7 @@
 //! **Invariant:** time and memory are linear in the text of the rung, whatever numbers it holds.
 
 use rowan::TextRange;
+use rustc_hash::FxHashSet;
 
 use crate::syntax::pl7::ast::{Cell, Expr, Rung};
 use crate::syntax::pl7::ladder_words::Element;
@@ -179,7 +180,7 @@ impl Placed<'_> {
     }
 
     /// The column behind its last one, from 0.
-    fn end(&self) -> u32 {
+    pub fn end(&self) -> u32 {
         self.column + self.width
     }
 }
@@ -495,6 +496,7 @@ impl<'t> Grid<'t> {
     /// What breaks the rules of a rung, with its place and the other place that takes part.
     pub fn flaws(&self) -> Vec<(Flaw, TextRange, Option<TextRange>)> {
         let mut flaws = Vec::new();
+        let open_links: FxHashSet<TextRange> = self.open_links.iter().copied().collect();
         for it in &self.placed {
             let Some(element) = it.element else { continue };
             let columns = self.layout.columns();
@@ -513,7 +515,9 @@ impl<'t> Grid<'t> {
             let is_loose = flaws.last().is_some_and(|last| last.0 == Flaw::NotFed && last.1 == it.range());
             // The outputs of a block may hang in the air (PL7:2808), and the right rail is an end.
             let ends = it.end() >= columns || it.is_block() || it.outputs.is_empty();
-            if !ends && !is_loose && !it.outputs.iter().any(|wire| self.is_used(*wire)) {
+            // A vertical link that ends at nothing is the mistake then.
+            let is_open = open_links.contains(&it.range());
+            if !ends && !is_loose && !is_open && !it.outputs.iter().any(|wire| self.is_used(*wire)) {
                 flaws.push((Flaw::LeadsNowhere, it.range(), None));
             }
         }
@@ -751,6 +755,7 @@ mod tests {
         assert_eq!(flaws("EMPTY_CELL,H_LINK(3),EMPTY_CELL(7);"), [Flaw::NotFed]);
         assert_eq!(flaws("OPEN_CONTACT(A),H_LINK(3),EMPTY_CELL(7);"), [Flaw::LeadsNowhere]);
         assert_eq!(flaws("OPEN_CONTACT(A),SHORT_CIRCUIT(9),COIL(X);"), [Flaw::OpenLink]);
+        assert_eq!(flaws("OPEN_CONTACT(A),SHORT_CIRCUIT(3),EMPTY_CELL(7);"), [Flaw::OpenLink], "one mistake");
         assert_eq!(flaws("V_LINK,EMPTY_CELL(10);\nH_LINK(10),COIL(X);"), [Flaw::OpenLink]);
         assert_eq!(flaws("EMPTY_CELL(2),BLOCK(%TM0),EMPTY_CELL(7);"), [Flaw::BlockNotFed]);
         assert_eq!(flaws("EMPTY_CELL(7),OPERATE %MW0:=1 END_BLOCK;"), [Flaw::BlockNotFed]);

@@ -155,10 +155,12 @@ impl<'t> Kinds<'t> {
             expr = it.expr()?;
         }
         let Expr::Object(it) = expr else { return None };
-        if let Some(&id) = self.model.addresses.get(&*it.syntax().text()) {
+        let address = it.address();
+        if it.syntax().is_leaf()
+            && let Some(&id) = self.model.addresses.get(&*address)
+        {
             return Some(self.model.object(id).ty);
         }
-        let address = it.address();
         let object = match it.index() {
             Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()),
             None => object::pl7::parse(&address),

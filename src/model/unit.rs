@@ -151,8 +151,8 @@ pub struct Access {
     pub version: u32,
     /// For reads: whether the value may stem from before this unit's own assignments, so from another unit or scan.
     pub exposed: bool,
-    /// For an actual parameter: the name of the formal one.
-    pub parameter: Option<SmolStr>,
+    /// For an actual parameter: the formal one.
+    pub parameter: Option<Formal>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -268,6 +268,14 @@ pub enum Callee {
     Instance(SmolStr),
     /// Computed at run time.
     Unknown,
+}
+
+/// A formal parameter, as a call says which it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Formal {
+    Name(SmolStr),
+    /// Place among the parameters, from 0.
+    Position(u32),
 }
 
 /// A parameter of a call with what was given for it.
@@ -479,7 +487,7 @@ pub enum Section {
     Temp,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct UnitModel {
     pub entity: Entity,
     pub language: Language,

@@ -9,7 +9,7 @@ use super::decode::{Encoding, SourceText, decode, looks_binary};
 use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
 };
-use crate::model::entity::{BlockKind, Family};
+use crate::model::entity::{BlockKind, BlockName, Entity, Family};
 use crate::model::object;
 use crate::syntax::pl7::ladder_words;
 
@@ -435,8 +435,14 @@ struct Tally {
     /// Headers and ends of STEP 7 blocks.
     block_headers: u32,
     block_ends: u32,
+    /// Headers that a DFB type of PL7 has as well as a block of others: `FUNCTION_BLOCK Cpt`.
+    dfb_headers: u32,
+    /// Lines that in a function block only PL7 has: its types, its statements on bits.
+    dfb: u32,
     /// Declarations and other lines that are code in a STEP 7 block but mean nothing elsewhere.
     declarations: u32,
+    /// Those among them that no other vendor's block has: `BEGIN`, `NETWORK`.
+    step7_words: u32,
     /// Statements of structured languages: assignments in code blocks, IF, CASE.
     scl: u32,
     /// The lines after the last header belong to a code block, not to data.
@@ -502,6 +508,7 @@ impl Tally {
             }
         } else if let Some(block) = block_header(line) {
             self.block_headers += 1;
+            self.dfb_headers += u32::from(is_dfb_header(&block, line));
             self.in_code_block = !matches!(block.block_kind(), Some(BlockKind::Db | BlockKind::Udt));
         } else if block_end(line).is_some() {
             self.block_ends += 1;
@@ -517,6 +524,7 @@ impl Tally {
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
         self.pl7_2 += u32::from(!is_pl7 && has_pl7_2_object(line));
+        self.dfb += u32::from(is_dfb_line(code, first));
         self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
             Some(Pl7Text::Il) => self.il += 1,
@@ -548,7 +556,10 @@ impl Tally {
                 self.declarations += 1;
             }
             "VAR_TEMP" | "STRUCT" | "END_STRUCT" | "BEGIN" | "NETWORK" | "TITLE" | "VERSION" | "AUTHOR" | "FAMILY"
-            | "KNOW_HOW_PROTECT" => self.declarations += 1,
+            | "KNOW_HOW_PROTECT" => {
+                self.declarations += 1;
+                self.step7_words += 1;
+            }
             "IF" | "ELSIF" | "ELSE" | "END_IF" | "CASE" | "END_CASE" | "FOR" | "END_FOR" | "WHILE" | "END_WHILE"
             | "REPEAT" | "END_REPEAT" | "REGION" => self.scl += 1,
             _ if is_step5(code) => self.step5 += 1,
@@ -590,7 +601,13 @@ impl Tally {
             return None;
         }
         if self.block_headers > 0 && self.declarations + self.block_ends + self.step7 > 0 {
-            return Some(if self.graph > 0 && self.chart + self.graph > 1 {
+            let of_step7 = self.step7_words + self.step7 + self.graph + self.step5;
+            let is_open = self.dfb_headers == self.block_headers && of_step7 == 0;
+            return Some(if is_open && self.dfb + self.pl7 + self.cells + self.headings() > 0 {
+                Detected::Pasted(self.pl7_text(Extension::Other))
+            } else if is_open && self.scl + self.st > 0 {
+                Detected::Unsupported { what: unsupported::IEC }
+            } else if self.graph > 0 && self.chart + self.graph > 1 {
                 Detected::Unsupported { what: unsupported::GRAPH }
             } else if self.scl > 1 && self.step7 * 4 < self.scl {
                 Detected::Unsupported { what: unsupported::SCL }
@@ -651,6 +668,29 @@ impl Tally {
             _ => Pl7Text::St,
         }
     }
+}
+
+/// Whether the header of a block may be that of a DFB type: its name has neither a number nor quotes.
+fn is_dfb_header(block: &Entity, line: &str) -> bool {
+    matches!(block, Entity::Block { kind: BlockKind::Fb, name: BlockName::Symbol(_) }) && !line.contains('"')
+}
+
+/// Whether a line of a function block can only be one of a DFB type (PL7:5376-5391, PL7:3571-3576, PL7:3808-3811).
+fn is_dfb_line(code: &str, first: &str) -> bool {
+    match first {
+        "VAR_PUBLIC" | "VAR_PRIVATE" | "FTON" | "FTOF" | "FTP" | "FPULSOR" => return true,
+        // Statement list has `SET` alone, and `INC 5`.
+        "SET" | "RESET" | "INC" | "DEC" => {
+            let operand = code.get(first.len()..).unwrap_or_default().trim();
+            return operand.starts_with(|it: char| it.is_alphabetic() || it == '_') && operand.ends_with(';');
+        }
+        _ => {}
+    }
+    let mut words = code.split(|it: char| !(it.is_alphanumeric() || it == '_'));
+    let mut blanks = code.split_whitespace().map(|it| it.trim_start_matches('(')).peekable();
+    words.any(|it| ["EBOOL", "AR_X", "AR_W", "AR_D", "AR_R"].iter().any(|ty| ty.eq_ignore_ascii_case(it)))
+        || std::iter::from_fn(|| Some((blanks.next()?, blanks.peek()?.chars().next())))
+            .any(|(word, next)| matches!(word, "RE" | "FE") && next.is_some_and(char::is_alphabetic))
 }
 
 /// Whether a line that starts with a common word is one of a chart: `STEP 3 AT (C 4,L 3) :`, `TRANSITION FROM X0 TO X1`.
@@ -984,6 +1024,37 @@ mod tests {
         check("a.txt", "U T1\n= A4.0", STEP7);
         check("a.txt", "ST : MAST - SR10\n%M0 := TRUE;", ST);
         check("a.txt", "LD : MAST - Peinture\nRUNG\nEND_RUNG", LD);
+    }
+
+    /// `FUNCTION_BLOCK` begins a DFB type of PL7, a block of STEP 7, and a block of IEC 61131-3.
+    #[test]
+    fn function_blocks() {
+        let interface = "VAR_INPUT\n Raz : BOOL;\n Presel : WORD;\nEND_VAR\n";
+        let of =
+            |rest: &str| format!("(* count *)\nFUNCTION_BLOCK Cpt_pieces\n{interface}{rest}\nEND_FUNCTION_BLOCK\n");
+        for path in ["a.txt", "a.st", "a.il", "a.awl", "a.ld"] {
+            for (rest, expected) in [
+                ("IF RE Raz THEN\n V_cour := 0;\nEND_IF;", ST),
+                ("IF (RE Raz) THEN\n V_cour := 0;\nEND_IF;", ST),
+                ("VAR_PUBLIC\n V_cour : WORD;\nEND_VAR\nV_cour := 0;", ST),
+                ("VAR\n Memo : EBOOL;\nEND_VAR\nMemo := Raz;", ST),
+                ("IF Raz THEN\n SET Done;\nEND_IF;", ST),
+                ("! V_cour := 0;", ST),
+                ("RUNG\nOPEN_CONTACT(Raz),H_LINK(9),COIL(Done);\nEND_RUNG", LD),
+                ("BEGIN\n U #Raz;\n S #Done;", STEP7),
+                ("BEGIN\nNETWORK\nTITLE = x", STEP7),
+                ("BEGIN\nIF #Raz THEN\n #V_cour := 0;\nEND_IF;", unsupported(unsupported::SCL)),
+                ("IF Raz THEN\n V_cour := 0;\nEND_IF;", unsupported(unsupported::IEC)),
+                (
+                    "VAR\n t : TON;\nEND_VAR\nt(IN := Raz);\nIF t.Q THEN\n Done := TRUE;\nEND_IF;",
+                    unsupported(unsupported::IEC),
+                ),
+            ] {
+                check(path, &of(rest), expected);
+            }
+        }
+        check("a.txt", &format!("FUNCTION_BLOCK \"Cpt\"\n{interface}BEGIN\n SET;\nEND_FUNCTION_BLOCK"), STEP7);
+        check("a.txt", &format!("FUNCTION_BLOCK FB 3\n{interface}END_FUNCTION_BLOCK\n"), STEP7);
     }
 
     #[test]

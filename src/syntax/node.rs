@@ -92,6 +92,11 @@ impl<'t> SyntaxNode<'t> {
         }
     }
 
+    /// Whether the node holds one token and nothing else.
+    pub fn is_leaf(self) -> bool {
+        matches!(self.green, Green::Leaf(_))
+    }
+
     pub fn text_range(self) -> TextRange {
         let len = match self.green {
             Green::Node(it) => it.text_len(),

@@ -1,8 +1,9 @@
-//! The parser kit: a cursor over tokens that a grammar drives, and the events it leaves behind.
+//! The parser kit: a cursor over tokens that a grammar drives, and the tree that grows behind it.
 //!
 //! A grammar sees significant tokens only. It opens a node with [`Parser::start`], closes it with
 //! [`Parser::complete`], and may wrap a finished node afterwards with [`Parser::precede`]. Whatever a grammar does,
 //! every token is in the tree exactly once and in order: [`Parser::finish`] appends those that were not consumed.
+//! No event is kept: a node is built when it is closed, from the finished children that stand behind its marker.
 
 use rowan::{GreenNode, TextRange, TextSize};
 
@@ -18,6 +19,14 @@ pub const MAX_DEPTH: u32 = 128;
 pub struct Token {
     pub kind: SyntaxKind,
     pub len: u32,
+}
+
+/// How many spaces stand between here and something visible in ASCII on the same line. Spaces are a third of all tokens,
+/// and no affair of a lexer's state machine; other blanks are.
+pub(super) fn spaces(rest: &str) -> usize {
+    let rest = rest.as_bytes();
+    let spaces = rest.iter().take_while(|it| **it == b' ').count();
+    if rest.get(spaces).is_some_and(u8::is_ascii_graphic) { spaces } else { 0 }
 }
 
 /// A place that the grammar does not allow, with what was expected. The range is relative to the unit.
@@ -46,20 +55,6 @@ impl Parse {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Event {
-    /// Opens a node; `forward_parent` is the distance to the event of a node that wraps it.
-    Start {
-        kind: SyntaxKind,
-        forward_parent: u32,
-    },
-    /// A start that was abandoned.
-    Tombstone,
-    Finish,
-    /// Consumes the next significant token, possibly under another kind than the lexer gave it.
-    Token(SyntaxKind),
-}
-
-#[derive(Debug, Clone, Copy)]
 struct Significant {
     kind: SyntaxKind,
     start: u32,
@@ -72,16 +67,19 @@ pub struct Parser<'t> {
     tokens: &'t [Token],
     significant: Vec<Significant>,
     pos: usize,
-    events: Vec<Event>,
+    /// How many of the tokens are in the tree, and where in the text the next one starts.
+    built: usize,
+    offset: u32,
+    builder: TreeBuilder<'t>,
     errors: Vec<SyntaxError>,
     depth: u32,
 }
 
-/// An open node.
+/// An open node: where among the finished children its own begin.
 #[must_use = "a started node must be completed or abandoned"]
 pub struct Marker(usize);
 
-/// A closed node, which `precede` can wrap.
+/// A closed node, which `precede` can wrap: where it is among the finished children.
 #[derive(Debug, Clone, Copy)]
 pub struct Completed(usize);
 
@@ -101,8 +99,8 @@ impl<'t> Parser<'t> {
             }
             start += token.len;
         }
-        let events = Vec::with_capacity(significant.len() * 2);
-        Self { text, tokens, significant, pos: 0, events, errors: Vec::new(), depth: 0 }
+        let builder = TreeBuilder::new(text);
+        Self { text, tokens, significant, pos: 0, built: 0, offset: 0, builder, errors: Vec::new(), depth: 0 }
     }
 
     pub fn at_end(&self) -> bool {
@@ -169,8 +167,24 @@ impl<'t> Parser<'t> {
     /// Consumes the current token under another kind: contextual keywords and free text.
     pub fn bump_as(&mut self, kind: SyntaxKind) {
         if !self.at_end() {
-            self.events.push(Event::Token(kind));
+            self.trivia();
+            self.token(Some(kind));
             self.pos += 1;
+        }
+    }
+
+    /// Moves blanks and comments before the current token to the tree.
+    fn trivia(&mut self) {
+        while self.tokens.get(self.built).is_some_and(|it| it.kind.is_trivia()) {
+            self.token(None);
+        }
+    }
+
+    fn token(&mut self, kind: Option<SyntaxKind>) {
+        if let Some(token) = self.tokens.get(self.built) {
+            self.builder.token(kind.unwrap_or(token.kind), self.offset, token.len);
+            self.offset += token.len;
+            self.built += 1;
         }
     }
 
@@ -183,30 +197,29 @@ impl<'t> Parser<'t> {
     }
 
     pub fn start(&mut self) -> Marker {
-        self.events.push(Event::Tombstone);
-        Marker(self.events.len() - 1)
+        Marker(self.builder.len())
     }
 
+    /// Closes a node. Blanks and comments before its first token stay outside of it.
     pub fn complete(&mut self, marker: Marker, kind: SyntaxKind) -> Completed {
-        self.events[marker.0] = Event::Start { kind, forward_parent: 0 };
-        self.events.push(Event::Finish);
-        Completed(marker.0)
+        let first = self.builder.skip_trivia(marker.0);
+        if first == self.builder.len() {
+            // An empty node stands where the next token is.
+            self.trivia();
+            let first = self.builder.len();
+            self.builder.node(kind, first);
+            return Completed(first);
+        }
+        self.builder.node(kind, first);
+        Completed(first)
     }
 
     /// Forgets an open node; its tokens go to the node around it.
-    pub fn abandon(&mut self, marker: Marker) {
-        if marker.0 + 1 == self.events.len() {
-            self.events.pop();
-        }
-    }
+    pub fn abandon(&mut self, Marker(_): Marker) {}
 
     /// Opens a node that wraps the completed one.
     pub fn precede(&mut self, completed: Completed) -> Marker {
-        let marker = self.start();
-        if let Event::Start { forward_parent, .. } = &mut self.events[completed.0] {
-            *forward_parent = u32::try_from(marker.0 - completed.0).unwrap_or(0);
-        }
-        marker
+        Marker(completed.0)
     }
 
     /// Range of the current token; empty, after the last significant token, at the end.
@@ -248,108 +261,12 @@ impl<'t> Parser<'t> {
         Some(result)
     }
 
-    /// Builds the tree under one [`SyntaxKind::Root`].
+    /// The tree under one [`SyntaxKind::Root`].
     pub fn finish(mut self) -> Parse {
-        let mut cursor = Cursor {
-            text: self.text,
-            tokens: self.tokens,
-            index: 0,
-            offset: 0,
-            builder: TreeBuilder::new(self.text.len()),
-        };
-        cursor.builder.start_node(SyntaxKind::Root);
-        let mut wrappers = Vec::new();
-        let mut open = 0_u32;
-        let mut next = 0;
-        while next < self.events.len() {
-            let at = next;
-            next += 1;
-            match std::mem::replace(&mut self.events[at], Event::Tombstone) {
-                Event::Tombstone => {}
-                Event::Start { kind, forward_parent } => {
-                    wrappers.push(kind);
-                    let (mut from, mut distance) = (at, forward_parent);
-                    while distance != 0 {
-                        from += distance as usize;
-                        match std::mem::replace(&mut self.events[from], Event::Tombstone) {
-                            Event::Start { kind, forward_parent } => {
-                                wrappers.push(kind);
-                                distance = forward_parent;
-                            }
-                            _ => break,
-                        }
-                    }
-                    cursor.trivia();
-                    let leaf = match self.events.get(next..next + 2) {
-                        Some(&[Event::Token(token), Event::Finish]) => Some(token),
-                        _ => None,
-                    };
-                    // The first is the innermost.
-                    for kind in wrappers.drain(usize::from(leaf.is_some())..).rev() {
-                        cursor.builder.start_node(kind);
-                        open += 1;
-                    }
-                    if let (Some(token), Some(node)) = (leaf, wrappers.pop()) {
-                        cursor.leaf(node, token);
-                        next += 2;
-                    }
-                }
-                Event::Finish => {
-                    if open > 0 {
-                        cursor.builder.finish_node();
-                        open -= 1;
-                    }
-                }
-                Event::Token(kind) => {
-                    cursor.trivia();
-                    cursor.token(Some(kind));
-                }
-            }
-        }
-        for _ in 0..open {
-            cursor.builder.finish_node();
-        }
-        while cursor.index < cursor.tokens.len() {
-            cursor.token(None);
-        }
-        self.errors.sort_by_key(|it| (it.range.start(), it.range.end()));
-        Parse { green: cursor.builder.finish(), errors: self.errors.into_boxed_slice() }
-    }
-}
-
-struct Cursor<'t> {
-    text: &'t str,
-    tokens: &'t [Token],
-    index: usize,
-    offset: usize,
-    builder: TreeBuilder,
-}
-
-impl<'t> Cursor<'t> {
-    fn trivia(&mut self) {
-        while self.tokens.get(self.index).is_some_and(|it| it.kind.is_trivia()) {
+        while self.built < self.tokens.len() {
             self.token(None);
         }
-    }
-
-    fn token(&mut self, kind: Option<SyntaxKind>) {
-        if let Some((token, text)) = self.next() {
-            self.builder.token(kind.unwrap_or(token.kind), text);
-        }
-    }
-
-    fn leaf(&mut self, node: SyntaxKind, token: SyntaxKind) {
-        if let Some((_, text)) = self.next() {
-            self.builder.leaf(node, token, text);
-        }
-    }
-
-    fn next(&mut self) -> Option<(Token, &'t str)> {
-        let token = *self.tokens.get(self.index)?;
-        let end = self.offset + token.len as usize;
-        let text = &self.text[self.offset..end];
-        self.offset = end;
-        self.index += 1;
-        Some((token, text))
+        self.errors.sort_by_key(|it| (it.range.start(), it.range.end()));
+        Parse { green: self.builder.finish(), errors: self.errors.into_boxed_slice() }
     }
 }

@@ -134,16 +134,21 @@ const OBJECT_LETTERS: [&str; 38] = [
     "TXT", "E", "A", "Q", "K", "MW", "KW", "QW", "MB", "KB", "ID", "QD", "MD", "KD", "TM", "MN", "DR", "XM",
 ];
 
-fn is_object(word: &str) -> bool {
+/// Whether a word starts an address. Letters that are PL7's or the other vendor's alone need an item behind, for names of
+/// actions look like them: `A1`.
+fn is_object(word: &str, rest: &str) -> bool {
     let letters = word.trim_end_matches(|it: char| it.is_ascii_digit());
-    word.starts_with('%') || OBJECT_LETTERS.iter().any(|it| it.eq_ignore_ascii_case(letters))
+    let is_foreign = ["E", "A", "Q", "K"].iter().any(|it| it.eq_ignore_ascii_case(letters));
+    word.starts_with('%')
+        || OBJECT_LETTERS.iter().any(|it| it.eq_ignore_ascii_case(letters))
+            && (!is_foreign || matches!(rest.as_bytes(), [b',' | b'.', digit, ..] if digit.is_ascii_digit()))
 }
 
 /// Takes what belongs to an address after its number: at most two items, then a length or an index.
 ///
 /// A comma also separates the cells of a network, so an item is taken only where it is a whole word that can be one.
 fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
-    if !is_object(lexer.slice()) {
+    if !is_object(lexer.slice(), lexer.remainder()) {
         return Lexeme::Ident;
     }
     let is_drum = matches!(lexer.slice().as_bytes(), [b'D' | b'd', digit, ..] if digit.is_ascii_digit());
@@ -175,7 +180,10 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     if close != 0 {
         let inner = rest.get(end + 1..).unwrap_or_default();
         let length = inner.iter().take_while(|it| it.is_ascii_alphanumeric()).count();
-        if length > 0 && inner.get(length) == Some(&close) {
+        // Of `O1,3(S)` in a chart, the qualifier is none; of `W5(10)`, the index is no address.
+        let is_word = matches!(inner.first(), Some(b'W' | b'w' | b'0'..=b'9' | b'C' | b'c' | b'B' | b'b'))
+            && inner.get(length.wrapping_sub(1)).is_some_and(u8::is_ascii_digit);
+        if (close == b']' || is_word) && length > 0 && inner.get(length) == Some(&close) {
             end += length + 2;
         }
     }
@@ -235,6 +243,11 @@ mod tests {
         assert_eq!(kinds("B5x FCX DTA T"), [Ident, Ident, Ident, Ident]);
         assert_eq!(kinds("W5:=3"), [ObjectAddress, Assign, Number]);
         assert_eq!(kinds("(X1,X2)"), [LParen, ObjectAddress, Comma, ObjectAddress, RParen]);
+        assert_eq!(
+            kinds("O1,3(S) B5(N1)"),
+            [ObjectAddress, LParen, Ident, RParen, ObjectAddress, LParen, Ident, RParen]
+        );
+        assert_eq!(kinds("A1(N) E1,0 Q2.3"), [Ident, LParen, Ident, RParen, ObjectAddress, ObjectAddress]);
         assert_eq!(kinds("N1 P0 PL7 EVT3 AB5 SR1"), [Ident; 6]);
         assert_eq!(kinds("'Chart' MAST'PRL'"), [CharString, Ident, CharString]);
         assert_eq!(kinds("(*PHRASE*) B1 (*END_PHRASE*) ..."), [SentenceStart, ObjectAddress, SentenceEnd, Elision]);

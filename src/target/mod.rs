@@ -273,7 +273,8 @@ impl Target {
     pub const fn chart_pages(&self) -> Option<(Limit, Limit, Limit)> {
         match self.family {
             Family::Pl7 => Some((pl7::CHART_PAGES, pl7::PAGE_LINES, pl7::PAGE_COLUMNS)),
-            Family::Pl72 | Family::Step7 => None,
+            Family::Pl72 => Some((pl72::CHART_PAGES, pl72::CHART_LINES, pl72::CHART_COLUMNS)),
+            Family::Step7 => None,
         }
     }
 

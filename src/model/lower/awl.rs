@@ -18,8 +18,8 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind,
-    Pin, Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Declaration, Formal, Hollow, HollowKind, Leave, LoopKind, Mode,
+    OddityKind, Pin, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};
@@ -30,7 +30,7 @@ use crate::target;
 pub fn lower(root: SyntaxNode<'_>, entity: Entity, mnemonics: Mnemonics) -> UnitModel {
     let heading = heading(root);
     let mut machine = Machine {
-        b: Builder::new(entity, Language::Awl(mnemonics), heading),
+        b: Builder::new(entity, Language::Awl(mnemonics), heading, root.text_range().len()),
         mnemonics,
         rlo: Rlo { state: RloState::FromCaller, value: Exprs::TRUE },
         fresh: true,
@@ -897,7 +897,7 @@ impl Machine {
                     let is_value = !matches!(self.b.model.objects[object.0 as usize].class, Class::CodeBlock);
                     if is_value {
                         let access = self.b.touch(object, mode, range);
-                        self.b.model.accesses[access as usize].parameter = name.clone();
+                        self.b.model.accesses[access as usize].parameter = name.clone().map(Formal::Name);
                     }
                     Some(object)
                 }

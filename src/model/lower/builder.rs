@@ -4,7 +4,7 @@ use std::hash::BuildHasher as _;
 
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
-use rowan::TextRange;
+use rowan::{TextRange, TextSize};
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -67,16 +67,19 @@ const GRANULE: u32 = 32;
 const WIDEST: u32 = 64;
 
 impl Builder {
-    /// `back_targets`: labels that a jump below them goes to.
-    pub(super) fn new(entity: Entity, language: Language, heading: TextRange) -> Self {
+    /// `len`: length of the code, for room in the tables.
+    pub(super) fn new(entity: Entity, language: Language, heading: TextRange, len: TextSize) -> Self {
+        let len = usize::from(len);
+        let mut anchors = Vec::with_capacity(len / 24 + 1);
+        anchors.push(heading);
         let model = UnitModel {
             entity,
             language,
-            objects: Vec::new(),
-            addresses: FxHashMap::default(),
-            exprs: Exprs::default(),
-            statements: Vec::new(),
-            accesses: Vec::new(),
+            objects: Vec::with_capacity(len / 64),
+            addresses: FxHashMap::with_capacity_and_hasher(len / 64, FxBuildHasher),
+            exprs: Exprs::with_capacity(len / 32),
+            statements: Vec::with_capacity(len / 64),
+            accesses: Vec::with_capacity(len / 28),
             labels: Vec::new(),
             jumps: Vec::new(),
             calls: Vec::new(),
@@ -91,7 +94,7 @@ impl Builder {
             hollows: Vec::new(),
             networks: Vec::new(),
             computes: None,
-            anchors: vec![heading],
+            anchors,
             instance_of: None,
             instructions: 0,
             reads_indirectly: false,
@@ -103,9 +106,9 @@ impl Builder {
         };
         Self {
             model,
-            ids: HashTable::new(),
+            ids: HashTable::with_capacity(len / 64),
             areas: FxHashMap::default(),
-            area_of: Vec::new(),
+            area_of: Vec::with_capacity(len / 64),
             writes: FxHashMap::default(),
             area_writes: FxHashMap::default(),
             wiped: 0,

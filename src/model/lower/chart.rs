@@ -4,7 +4,7 @@
 //! deactivation, those at activation, and the continuous ones (PL7:4565-4569). Between two pieces of code those of other
 //! pages may run, so that no value is known from one to the next.
 
-use rowan::TextRange;
+use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -51,7 +51,9 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: 
     let Lowering { pl7, mut chart, .. } = lowering;
     chart.actions.sort_by_key(|it| it.anchors.start);
     // The lowering gives it back after each piece of code.
-    let Some(pl7) = pl7 else { return Builder::new(Entity::Container, language, TextRange::default()).finish() };
+    let Some(pl7) = pl7 else {
+        return Builder::new(Entity::Container, language, TextRange::default(), TextSize::new(0)).finish();
+    };
     let mut model = pl7.b.finish();
     model.chart = Some(Box::new(chart));
     model
@@ -108,6 +110,7 @@ fn step_bit(pl7: &mut Pl7, name: &StepName, graph: Graph) -> Option<ObjectId> {
     let text = name.bit(graph);
     let object = match name {
         StepName::Symbol(_) => Object::symbol(&text),
+        _ if pl7.is_pl7_2() => object::pl72::parse(text.trim_start_matches('%')).ok()?.object,
         _ => object::pl7::parse(&text).ok()?,
     };
     Some(pl7.b.object(object))
@@ -461,7 +464,7 @@ impl<'t> Lowering<'t> {
             let Some(pl7) = &mut self.pl7 else { return };
             let text = it.target.text();
             let object = match it.target.kind() {
-                SyntaxKind::ObjectAddress => match object::pl7::parse(text) {
+                SyntaxKind::ObjectAddress => match pl7.address(text) {
                     Ok(object) => object,
                     Err(error) => {
                         pl7.address_error(error, it.target.text_range(), text);

@@ -12,7 +12,8 @@ use crate::model::unit::OddityKind;
 use crate::syntax::{Language, SyntaxKind, SyntaxNode};
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
-    let mut lowering = Lowering { b: Builder::new(entity, Language::Exchange, TextRange::default()), text };
+    let mut lowering =
+        Lowering { b: Builder::new(entity, Language::Exchange, TextRange::default(), root.text_range().len()), text };
     for node in root.descendants() {
         match node.kind() {
             SyntaxKind::VarDecl => lowering.declaration(node),

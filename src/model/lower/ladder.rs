@@ -116,7 +116,15 @@ impl Lowering {
             }
         }
         let grid = Grid::new(rung, self.layout);
-        for (flaw, range, related) in grid.flaws() {
+        // The power at the end of a receptivity of PL7-2 is what the transition takes.
+        let is_open = self.layout == Layout::Pl72 && self.is_transition;
+        let ends = |range: TextRange| {
+            let last = self.layout.columns() - 1;
+            is_open && grid.placed.iter().any(|it| it.range() == range && it.end() >= last)
+        };
+        let is_end = |flaw: Flaw, range: TextRange| flaw == Flaw::LeadsNowhere && ends(range);
+        let flaws: Vec<_> = grid.flaws().into_iter().filter(|it| !is_end(it.0, it.1)).collect();
+        for (flaw, range, related) in flaws {
             self.flaw(flaw, range).related.extend(related.map(|it| (it, "this wire goes round it")));
         }
         let networks = grid.networks();
@@ -208,7 +216,20 @@ impl Lowering {
         for &index in elements {
             let it = &grid.placed[index];
             self.leave(it, run.at(it));
+            if self.is_transition && it.end() + 1 >= self.layout.columns() {
+                for &wire in it.outputs.iter().filter(|it| !grid.is_used(**it)) {
+                    self.take(run.power[Grid::index(wire)]);
+                }
+            }
         }
+    }
+
+    /// What lets the transition be crossed.
+    fn take(&mut self, when: ExprId) {
+        self.receptivity = Some(match self.receptivity {
+            Some(other) => self.pl7.b.exprs().or(other, when),
+            None => when,
+        });
     }
 
     /// State of a contact or comparison.
@@ -423,10 +444,7 @@ impl Lowering {
         let element = it.element?;
         match element {
             Element::HashCoil => {
-                self.receptivity = Some(match self.receptivity {
-                    Some(other) => self.pl7.b.exprs().or(other, when),
-                    None => when,
-                });
+                self.take(when);
                 return None;
             }
             Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil | Element::SaveCoil => {}
@@ -510,6 +528,8 @@ impl Lowering {
             Element::HashCoil if !self.is_transition => Flaw::HashOutsideTransition,
             _ if !self.is_transition || element == Element::HashCoil => return,
             _ if is_coil => Flaw::CoilInTransition,
+            // All of the test zone may be used in PL7-2 (PL72:1484).
+            Element::Block if self.layout == Layout::Pl72 => return,
             Element::Block => Flaw::ElementInTransition,
             _ if element.is_action() => Flaw::ElementInTransition,
             _ => return,

@@ -11,7 +11,7 @@ use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Index, IndexKind, Leave, Mode, OddityKind, Pin, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Formal, Index, IndexKind, Leave, Mode, OddityKind, Pin, StatementKind,
 };
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
 use crate::syntax::pl7::functions::{self, Function};
@@ -61,7 +61,7 @@ fn heading(node: SyntaxNode<'_>) -> TextRange {
 
 impl Pl7 {
     pub(super) fn new(root: SyntaxNode<'_>, entity: Entity, language: Language) -> Self {
-        let b = Builder::new(entity, language, heading(root));
+        let b = Builder::new(entity, language, heading(root), root.text_range().len());
         let mut pl7 = Self { b, items: dfb::Items::default() };
         dfb::enter(&mut pl7, root);
         pl7
@@ -70,6 +70,11 @@ impl Pl7 {
     /// Whether operands are those of PL7-2.
     pub(super) fn is_pl7_2(&self) -> bool {
         self.b.model.language.is_pl7_2()
+    }
+
+    /// A direct object, as an address without index names it.
+    pub(super) fn address(&self, text: &str) -> Result<Object, object::AddressError> {
+        if self.is_pl7_2() { object::pl72::parse(text).map(|it| it.object) } else { object::pl7::parse(text) }
     }
 
     pub(super) fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
@@ -90,11 +95,11 @@ impl Pl7 {
         let range = it.syntax().text_range();
         let address = it.address();
         if self.is_pl7_2() {
-            return self.word_object(address, range);
+            return self.word_object(&address, range);
         }
-        let index = it.index();
+        let index = if it.syntax().is_leaf() { None } else { it.index() };
         if index.is_none()
-            && let Some(&id) = self.b.model.addresses.get(&address)
+            && let Some(&id) = self.b.model.addresses.get(&*address)
         {
             return (id, range);
         }
@@ -114,7 +119,7 @@ impl Pl7 {
             Err(error) => return (self.address_error(error, range, &address), range),
         };
         if is_direct {
-            self.b.model.addresses.insert(address, id);
+            self.b.model.addresses.insert(address.into(), id);
         }
         (id, range)
     }
@@ -482,6 +487,13 @@ impl Pl7 {
             let Some(argument) = argument else { continue };
             let at = argument.syntax().text_range();
             let (object, ..) = self.argument(&argument, function, position);
+            // The index of an object is read before the object itself is accessed.
+            if object.is_some()
+                && function.is_none()
+                && let Some(access) = self.b.model.accesses.last_mut().filter(|it| it.mode == Mode::InOut)
+            {
+                access.parameter = Some(Formal::Position(index(position)));
+            }
             arguments.push(Argument { name: None, object, range: at, position: index(position) });
         }
         let callee_kind = match function {

@@ -108,13 +108,13 @@ struct Source {
 
 impl Pl7 {
     /// An object of PL7-2. The read of its index is recorded.
-    pub(super) fn word_object(&mut self, address: SmolStr, range: TextRange) -> (ObjectId, TextRange) {
-        if let Some(&id) = self.b.model.addresses.get(&address) {
+    pub(super) fn word_object(&mut self, address: &str, range: TextRange) -> (ObjectId, TextRange) {
+        if let Some(&id) = self.b.model.addresses.get(address) {
             return (id, range);
         }
-        let found = match pl72::parse(&address) {
+        let found = match pl72::parse(address) {
             Ok(found) => found,
-            Err(error) => return (self.address_error(error, range, &address), range),
+            Err(error) => return (self.address_error(error, range, address), range),
         };
         let id = self.b.object(found.object);
         match found.index {
@@ -124,7 +124,7 @@ impl Pl7 {
                 self.b.model.indexes.push(Index { what: IndexKind::Object(index), range });
             }
             None => {
-                self.b.model.addresses.insert(address, id);
+                self.b.model.addresses.insert(address.into(), id);
             }
         }
         (id, range)
@@ -296,6 +296,7 @@ impl Pl7 {
 #[cfg(test)]
 mod tests {
     use crate::model::UnitModel;
+    use crate::model::chart::Receptivity;
     use crate::model::entity::{Entity, Part, Task};
     use crate::model::lower::testing::show;
     use crate::model::unit::{Mode, OddityKind, StatementKind};
@@ -477,5 +478,84 @@ mod tests {
         }
         assert!(model("OPEN_CONTACT(Marche),H_LINK(8),COIL(B0);").oddities.is_empty());
         assert!(model("OPEN_CONTACT(D1, F),H_LINK(8),COIL(B0);").oddities.is_empty());
+    }
+
+    fn unit(address: &str, text: &str, language: Language) -> UnitModel {
+        let parse = syntax::parse(language, text);
+        assert_eq!(parse.errors(), [], "{text}");
+        let entity = crate::source::entity_from_address(address).unwrap_or_else(|| panic!("{address}"));
+        super::super::lower(parse.syntax(), text, entity, language)
+    }
+
+    fn receptivities(model: &UnitModel) -> Vec<String> {
+        let chart = model.chart.as_deref().unwrap_or_else(|| panic!("a chart"));
+        let show = |it: &crate::model::chart::Transition| match it.receptivity {
+            Receptivity::Value(value) => show(model, value),
+            other => format!("{other:?}"),
+        };
+        chart.transitions.iter().map(show).collect()
+    }
+
+    /// `path: object` of each write.
+    fn writes(model: &UnitModel) -> Vec<String> {
+        let writes = model.accesses.iter().filter(|it| it.mode.writes());
+        let path = |it| model.statement(it).map_or_else(String::new, |it| show(model, it.path));
+        writes.map(|it| format!("{}: {}", path(it), model.object(it.object).text)).collect()
+    }
+
+    /// PL72:1421-1500: a network is the action of a step, another one the receptivity of a transition.
+    #[test]
+    fn pages() {
+        let rung = |row: &str| format!("RUNG\n{row};\nEND_RUNG\n");
+        let text = format!(
+            "PAGE 0\nINITIAL_STEP 0 AT (C0,L1) :\nACTION (N1,LD) :\n{}END_ACTION\nEND_STEP\n\
+             TRANSITION (LD) AT (C 0,L 2) :\n{}END_TRANSITION\nSTEP 3 AT (C 0,L 3) : END_STEP\n\
+             TRANSITION (LD) AT (C 0,L 4) :\n{}END_TRANSITION\nDEST_CONNECTOR 0 AT (C 0,L 5)\nEND_PAGE\n",
+            rung("OPEN_CONTACT(B1),H_LINK(8),COIL(O0,03)"),
+            rung("OPEN_CONTACT(I0,05),SHORT_CIRCUIT(8);\nOPEN_CONTACT(X0),H_LINK(8)"),
+            rung("COMPARE X3,V > 10 END_BLOCK,H_LINK(7),HASH_COIL"),
+        );
+        let it = unit("PL7-2 SEQ", &text, Language::Pl72Gr7);
+        assert_eq!(receptivities(&it), ["(I0,05 | X0)", "(X3,V > 10)"]);
+        assert_eq!(writes(&it), ["X0: O0,03"]);
+        assert!(it.oddities.is_empty(), "{:?}", it.oddities);
+        let chart = it.chart.as_deref().unwrap_or_else(|| panic!("a chart"));
+        assert_eq!(
+            chart.transitions.iter().map(|it| (it.sources.len(), it.targets.len())).collect::<Vec<_>>(),
+            [(1, 1); 2]
+        );
+    }
+
+    #[test]
+    fn charts_as_text() {
+        let text = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); O1,03(S); END_STEP\nSTEP X2 : A1(N); END_STEP\n\
+                    TRANSITION FROM X0 TO (X1,X2) := I0,05 AND NOT B3; END_TRANSITION\n\
+                    TRANSITION FROM (X1,X2) TO X0 := X1,V > 10; END_TRANSITION\n\
+                    ACTION Fill : O0,03 := I0,06; END_ACTION\nACTION A1 : SET B1; END_ACTION\n";
+        let it = unit("PL7-2 SEQ", text, Language::Pl72Sfc);
+        assert_eq!(receptivities(&it), ["(I0,05 & !B3)", "(X1,V > 10)"]);
+        assert_eq!(writes(&it), ["X1: O0,03", "X2: B1", "true: O1,03"]);
+        assert!(it.oddities.is_empty(), "{:?}", it.oddities);
+    }
+
+    /// Networks under headings that name a step or a transition.
+    #[test]
+    fn pieces() {
+        let action = "LD : PL7-2 - SEQ - X3\nRUNG\nH_LINK(9),COIL(O0,03);\nEND_RUNG\n";
+        assert_eq!(writes(&unit("PL7-2 - SEQ - X3", action, Language::Pl72Ld)), ["X3: O0,03"]);
+        let receptivity = "LD : PL7-2 - SEQ - X3 --> X4\nRUNG\nOPEN_CONTACT(I0,05),H_LINK(8);\nEND_RUNG\n";
+        let it = unit("PL7-2 - SEQ - X3 --> X4", receptivity, Language::Pl72Ld);
+        let branch = it.statements.iter().find_map(|it| match it.kind {
+            StatementKind::Branch { condition } => Some((it.path, condition)),
+            _ => None,
+        });
+        assert_eq!(
+            branch.map(|(path, it_)| (show(&it, path), show(&it, it_))),
+            Some(("X3".to_owned(), "I0,05".to_owned()))
+        );
+        assert!(it.oddities.is_empty(), "{:?}", it.oddities);
+        // Elsewhere, a line that ends before the coils leads nowhere.
+        let open = unit("PL7-2 - POST", "RUNG L1:\nOPEN_CONTACT(I0,05),H_LINK(8);\nEND_RUNG\n", Language::Pl72Ld);
+        assert_eq!(open.oddities.len(), 1);
     }
 }

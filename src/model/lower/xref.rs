@@ -9,7 +9,8 @@ use crate::syntax::{Language, SyntaxKind, SyntaxNode};
 
 pub(super) fn lower(root: SyntaxNode<'_>, entity: Entity) -> UnitModel {
     let heading = root.children().find(|it| it.kind() == SyntaxKind::Heading);
-    let mut b = Builder::new(entity, Language::Pl7Xref, heading.map(SyntaxNode::text_range).unwrap_or_default());
+    let heading = heading.map(SyntaxNode::text_range).unwrap_or_default();
+    let mut b = Builder::new(entity, Language::Pl7Xref, heading, root.text_range().len());
     // Whether control reaches an entry is not known of any.
     let unknown = b.exprs().opaque();
     b.enter(unknown, None);

@@ -7,6 +7,7 @@
 
 use logos::Logos;
 
+use crate::syntax::parser::spaces;
 use crate::syntax::{SyntaxKind, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -331,6 +332,9 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
         };
         at_start = false;
         out.push(kind, lexer.slice().len());
+        let spaces = spaces(lexer.remainder());
+        lexer.bump(spaces);
+        out.push(SyntaxKind::Whitespace, spaces);
     }
     out.tokens
 }

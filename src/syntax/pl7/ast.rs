@@ -1,5 +1,7 @@
 //! Typed views of a PL7 tree. Every accessor returns `None` where the text lacks the part.
 
+use std::borrow::Cow;
+
 use smol_str::SmolStr;
 
 use super::functions::{self, Function};
@@ -717,8 +719,8 @@ fn integer(digits: &str, base: u32) -> Option<u64> {
 
 impl<'t> ObjectRef<'t> {
     /// The address without blanks, index and the suffix behind the index: `%MW10:X4`, `%MW100` of `%MW100[%MW99]`.
-    pub fn address(self) -> SmolStr {
-        joined(self.pieces())
+    pub fn address(self) -> Cow<'t, str> {
+        if self.0.is_leaf() { self.0.text() } else { joined(self.pieces()) }
     }
 
     /// The tokens of the address, more than one if blanks part it: `%C8 .D`.
@@ -756,7 +758,10 @@ impl<'t> NameRef<'t> {
     }
 
     /// The name with its items and the suffix before an index, without blanks: `Controle.Ecart`, `Etat_pompe:X1`.
-    pub fn path(self) -> SmolStr {
+    pub fn path(self) -> Cow<'t, str> {
+        if self.0.is_leaf() {
+            return self.0.text();
+        }
         let is_before_index = |it: &SyntaxElement<'_>| it.kind() != SyntaxKind::Index;
         let pieces = self.0.children_with_tokens().take_while(is_before_index);
         joined(pieces.filter_map(SyntaxElement::into_token).filter(|it| !it.kind().is_trivia()))
@@ -769,20 +774,20 @@ impl<'t> NameRef<'t> {
     /// What extends the name, before or behind its index, without blanks: `:10`, `:X4`.
     pub fn suffix(self) -> Option<SmolStr> {
         let text = joined(self.0.tokens().filter(|it| it.kind() == SyntaxKind::ObjectSuffix));
-        (!text.is_empty()).then_some(text)
+        (!text.is_empty()).then(|| text.into())
     }
 }
 
 fn suffix_after_index(syntax: SyntaxNode<'_>) -> Option<SmolStr> {
     let behind = syntax.children_with_tokens().skip_while(|it| it.kind() != SyntaxKind::Index);
     let text = joined(behind.filter_map(SyntaxElement::into_token).filter(|it| it.kind() == SyntaxKind::ObjectSuffix));
-    (!text.is_empty()).then_some(text)
+    (!text.is_empty()).then(|| text.into())
 }
 
 /// Nearly always one piece, which then is not copied to the heap.
-fn joined<'t>(mut pieces: impl Iterator<Item = SyntaxToken<'t>>) -> SmolStr {
-    let Some(first) = pieces.next() else { return SmolStr::default() };
-    let Some(second) = pieces.next() else { return first.text().into() };
+fn joined<'t>(mut pieces: impl Iterator<Item = SyntaxToken<'t>>) -> Cow<'t, str> {
+    let Some(first) = pieces.next() else { return Cow::Borrowed("") };
+    let Some(second) = pieces.next() else { return Cow::Borrowed(first.text()) };
     let mut text = String::from(first.text());
     for piece in std::iter::once(second).chain(pieces) {
         text.push_str(piece.text());

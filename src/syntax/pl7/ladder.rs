@@ -155,7 +155,7 @@ impl Grammar<'_, '_> {
             Shape::Operation => {
                 match self.state.code {
                     Code::Pl7 => self.operations(),
-                    Code::Pl72 => self.word_operation(),
+                    Code::Pl72 => self.word_operations(),
                 }
                 self.end_block();
             }
@@ -256,7 +256,7 @@ impl Grammar<'_, '_> {
     }
 
     /// Whether the `;` at hand ends the row of a block that is not closed, rather than a statement in it.
-    fn at_row_end(&self) -> bool {
+    pub(super) fn at_row_end(&self) -> bool {
         self.p.nth(1).is_none()
             || matches!(self.nth_keyword(1), Some(Keyword::EndRung | Keyword::Rung))
             || self.is_cell_at(1)

@@ -5,6 +5,7 @@
 
 use logos::{Lexer, Logos};
 
+use crate::syntax::parser::spaces;
 use crate::syntax::{SyntaxKind, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -154,6 +155,11 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
                 lexer.bump(suffix);
                 tokens.push(Token { kind: SyntaxKind::ObjectSuffix, len: length(lexer.slice()) - len });
             }
+        }
+        let spaces = spaces(lexer.remainder());
+        if spaces > 0 {
+            lexer.bump(spaces);
+            tokens.push(Token { kind: SyntaxKind::Whitespace, len: u32::try_from(spaces).unwrap_or(u32::MAX) });
         }
     }
     tokens

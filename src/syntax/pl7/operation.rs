@@ -5,7 +5,7 @@
 
 use SyntaxKind::{
     Arrow, AssignStmt, BinExpr, CallExpr, Comma, Eq, ExprStmt, Ge, Gt, Ident, LBrack, LParen, Le, Lt, Minus, Ne,
-    Number, ObjectAddress, Percent, Plus, RBrack, RParen, Slash, Star, UnaryExpr,
+    Number, ObjectAddress, Percent, Plus, RBrack, RParen, Semicolon, Slash, Star, UnaryExpr,
 };
 
 use super::expr::Node;
@@ -61,8 +61,25 @@ impl Grammar<'_, '_> {
         self.p.complete(m, BinExpr);
     }
 
+    /// The operation of a block. What is written as several is read, and reported.
+    pub(super) fn word_operations(&mut self) {
+        self.word_operation();
+        while self.p.at(Semicolon) && !self.at_row_end() && !self.nth_is_end_block(1) {
+            self.error("a block of PL7-2 holds one operation");
+            self.p.bump();
+            self.word_operation();
+        }
+        if self.p.at(Semicolon) && self.nth_is_end_block(1) {
+            self.p.bump();
+        }
+    }
+
+    fn nth_is_end_block(&self, n: usize) -> bool {
+        self.nth_keyword(n) == Some(Keyword::EndBlock)
+    }
+
     /// operation = value '->' object
-    pub(super) fn word_operation(&mut self) {
+    fn word_operation(&mut self) {
         let m = self.p.start();
         let start = self.p.position();
         self.operation_value();
@@ -129,6 +146,8 @@ impl Grammar<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::syntax::AstNode as _;
+    use crate::syntax::pl7::ast::ObjectRef;
     use crate::target::pl72::OPERATIONS;
 
     #[test]
@@ -137,5 +156,65 @@ mod tests {
             assert_eq!(is_code(it.code), !it.binary, "{}", it.code);
         }
         assert!(is_code("SLC3") && is_code("src15") && !is_code("BTA1") && !is_code("W1") && !is_code(""));
+    }
+
+    /// The messages for a network with one cell of a kind.
+    fn errors(row: &str) -> Vec<String> {
+        let text = format!("RUNG L1:\n{row}\nEND_RUNG\nRUNG L2:\nH_LINK(9),COIL(B0);\nEND_RUNG\n");
+        let parse = crate::syntax::pl7::parse_pl7_2_ld(&text);
+        assert_eq!(parse.syntax().text(), text.as_str());
+        parse.errors().iter().map(|it| it.message.clone()).collect()
+    }
+
+    #[test]
+    fn one_error_for_what_is_wrong_in_a_block() {
+        for cell in ["127 -> W10", "W1+W2->W3", "CPL W1 → W2", "SLC3 W1 -> W1", "SRC 15 W1 -> W1", "W5 (W10) -> W1"] {
+            assert_eq!(errors(&format!("H_LINK(7),OPERATE {cell} END_BLOCK;")), [""; 0], "{cell}");
+        }
+        for cell in [
+            "W1",
+            "-> W1",
+            "W1 ->",
+            "W1 + -> W2",
+            "W1 + W2 + W3 -> W4",
+            "SLC W1 -> W2",
+            "BTA -> W2",
+            "W3 := W1",
+            "",
+            "W1 -> 5",
+            "W1 -> W2; W3 -> W4",
+            "W5(W1 + 2) -> W1",
+        ] {
+            assert_eq!(errors(&format!("H_LINK(7),OPERATE {cell} END_BLOCK;")).len(), 1, "{cell}");
+        }
+        for cell in ["W1 > ", "W1 + 5", "> 5", "W1 > 5 AND W2 > 5"] {
+            assert_eq!(errors(&format!("COMPARE {cell} END_BLOCK,H_LINK(7),COIL(B0);")).len(), 1, "{cell}");
+        }
+    }
+
+    #[test]
+    fn elements_that_only_one_language_has() {
+        for cell in ["CALL_COIL(SR5)", "RETURN_COIL", "HALT_COIL"] {
+            assert_eq!(errors(&format!("H_LINK(9),{cell};")).len(), 1, "{cell}");
+        }
+        assert_eq!(errors("H_LINK(9),SAVE_COIL(B5);"), [""; 0]);
+        let pl7 = crate::syntax::pl7::parse_ld("RUNG\nH_LINK(10),SAVE_COIL(%M5);\nEND_RUNG\n");
+        assert_eq!(pl7.errors().len(), 1);
+    }
+
+    #[test]
+    fn blanks_in_addresses() {
+        let address = |operand: &str| {
+            let text = format!("RUNG L1:\nOPEN_CONTACT({operand}),H_LINK(8),COIL(B0);\nEND_RUNG\n");
+            let parse = crate::syntax::pl7::parse_pl7_2_ld(&text);
+            assert_eq!(parse.errors(), [], "{operand}");
+            let object = parse.syntax().descendants().find_map(ObjectRef::cast);
+            object.map(|it| it.address().to_string())
+        };
+        for (text, expected) in
+            [("D1, F", "D1,F"), ("W5 (W10)", "W5(W10)"), ("B0 [8]", "B0[8]"), ("% B5", "%B5"), ("I0,05", "I0,05")]
+        {
+            assert_eq!(address(text).as_deref(), Some(expected), "{text}");
+        }
     }
 }

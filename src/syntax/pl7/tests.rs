@@ -613,20 +613,20 @@ mod text {
     #[test]
     fn objects_and_names() {
         let Expr::Object(it) = expr("%MW 100 [%MW99+1] :10") else { panic!() };
-        assert_eq!((it.address().as_str(), it.suffix().as_deref()), ("%MW100", Some(":10")));
+        assert_eq!((&*it.address(), it.suffix().as_deref()), ("%MW100", Some(":10")));
         assert_eq!(it.index().and_then(|it| it.expr()).map(|it| text(&it)).as_deref(), Some("%MW99+1"));
         let Expr::Object(it) = expr("%X20 .T[%MW5]") else { panic!() };
-        assert_eq!((it.address().as_str(), it.suffix()), ("%X20.T", None));
+        assert_eq!((&*it.address(), it.suffix()), ("%X20.T", None));
         let Expr::Object(it) = expr("% MW 10 :X4") else { panic!() };
         assert_eq!(it.address(), "%MW10:X4");
         let Expr::Name(it) = expr("MW108[%MW2]:10") else { panic!() };
-        assert_eq!((it.path().as_str(), it.suffix().as_deref()), ("MW108", Some(":10")));
+        assert_eq!((&*it.path(), it.suffix().as_deref()), ("MW108", Some(":10")));
         assert!(it.index().is_some());
         let Expr::Name(it) = expr("I102.MOD.ERR") else { panic!() };
         assert_eq!(it.path(), "I102.MOD.ERR");
         assert_eq!(it.items().map(|it| it.text().to_owned()).collect::<Vec<_>>(), ["MOD", "ERR"]);
         let Expr::Name(it) = expr("Température:12") else { panic!() };
-        assert_eq!((it.path().as_str(), it.suffix().as_deref()), ("Température:12", Some(":12")));
+        assert_eq!((&*it.path(), it.suffix().as_deref()), ("Température:12", Some(":12")));
     }
 
     #[test]

@@ -69,6 +69,11 @@ pub const COLUMN_STEPS: Limit = Limit::new(6, "PL72:1342");
 pub const COLUMN_TRANSITIONS: Limit = Limit::new(6, "PL72:1343");
 pub const COLUMN_ORIGINS: Limit = Limit::new(1, "PL72:1344");
 pub const COLUMN_DESTINATIONS: Limit = Limit::new(1, "PL72:1345");
+/// Lines of a page: those of its origin connectors, steps, transitions and destination connectors.
+pub const CHART_LINES: Limit = Limit::new(
+    COLUMN_ORIGINS.value + COLUMN_STEPS.value + COLUMN_TRANSITIONS.value + COLUMN_DESTINATIONS.value,
+    "PL72:1341-1345",
+);
 /// Steps of a chart, the initial ones included.
 pub const STEPS: Limit = Limit::new(96, "PL72:1407");
 pub const STEP_NUMBERS: Range = Range::new(0, 95, "PL72:1409");
