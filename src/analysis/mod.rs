@@ -11,6 +11,7 @@ pub mod counts;
 pub mod drives;
 pub mod edges;
 pub mod facts;
+pub mod features;
 pub mod gaps;
 pub mod known;
 pub mod program;
