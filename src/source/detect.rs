@@ -422,6 +422,8 @@ struct Tally {
     pl7: u32,
     /// Lines with something that only PL7-2 has: `I0,05`, `T0,D`, `W1 -> W2`.
     pl7_2: u32,
+    /// Lines with an object that PL7-2 does not have, by its form: `%M5`, `%I1.0`.
+    not_pl7_2: u32,
     /// Headings of pasted PL7 text, by language.
     headings_il: u32,
     headings_st: u32,
@@ -523,7 +525,8 @@ impl Tally {
         let first = word(code).0.to_ascii_uppercase();
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
-        self.pl7_2 += u32::from(!is_pl7 && has_pl7_2_object(line));
+        self.pl7_2 += u32::from(has_pl7_2_object(line));
+        self.not_pl7_2 += u32::from(is_pl7 && has_object_of_pl7_alone(line));
         self.dfb += u32::from(is_dfb_line(code, first));
         self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
@@ -571,9 +574,9 @@ impl Tally {
         }
     }
 
-    /// Whether ladder and charts are PL7-2's: their operands say so, or where they say nothing, the configuration.
+    /// Whether ladder and charts are PL7-2's: most of their operands say so, or where they say nothing, the configuration.
     fn is_pl7_2(&self, configured: Option<Family>) -> bool {
-        self.pl7 == 0 && (self.pl7_2 > 0 || configured == Some(Family::Pl72))
+        self.pl7_2 > self.not_pl7_2 || self.not_pl7_2 == 0 && configured == Some(Family::Pl72)
     }
 
     fn is_exchange(&self) -> bool {
@@ -735,6 +738,20 @@ fn has_pl7_2_object(line: &str) -> bool {
     let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
     let is_transfer = || line.contains("->") && line.contains("END_BLOCK") && !line.contains(":=");
     words.any(|it| object::pl72::parse(it).is_ok_and(|it| it.object.class != object::Class::Fault)) || is_transfer()
+}
+
+/// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
+/// others too: `%I0,05`, `%X3`.
+fn has_object_of_pl7_alone(line: &str) -> bool {
+    memchr::memchr_iter(b'%', line.as_bytes()).any(|at| {
+        let rest = line.get(at..).unwrap_or_default();
+        let is_part = |it: char| it.is_ascii_alphanumeric() || matches!(it, '%' | ',' | '.' | ':');
+        let end = rest.find(|it| !is_part(it)).unwrap_or(rest.len()).min(LONGEST_PL7_2 + 2);
+        let word = rest.get(..end).unwrap_or_default().trim_end_matches([',', ':', '.']);
+        let is_label =
+            matches!(word.as_bytes(), [b'%', b'L' | b'l', digits @ ..] if digits.iter().all(u8::is_ascii_digit));
+        !is_label && object::pl72::parse(word).is_err()
+    })
 }
 
 /// Characters of the longest address with a comma.
@@ -1248,6 +1265,14 @@ mod tests {
         // An operand of PL7 is never one of PL7-2.
         assert_eq!(with(Some(Family::Pl72), &rung("%I1.0")), ladder);
         assert_eq!(with(None, &format!("{}{}", rung("I0,05"), rung("%I1.0"))), ladder);
+        // With the percent sign of a converter, and its labels.
+        for operand in ["%I0,05", "%T0,D", "%X3,V"] {
+            assert_eq!(with(None, &rung(operand).replace("RUNG\nO", "RUNG %L5:\nO")), Detected::Pl72, "{operand}");
+        }
+        for operand in ["%X3", "%B5", "%T0"] {
+            assert_eq!(with(None, &rung(operand)), ladder, "{operand}");
+            assert_eq!(with(Some(Family::Pl72), &rung(operand)), Detected::Pl72, "{operand}");
+        }
         let operate = "RUNG\nH_LINK(7),OPERATE 127 -> W10 END_BLOCK;\nEND_RUNG\n";
         assert_eq!(with(None, operate), Detected::Pl72);
         let chart =
@@ -1259,6 +1284,8 @@ mod tests {
         assert_eq!(with(None, &exchange("B5")), Detected::Exchange);
         assert_eq!(with(Some(Family::Pl72), &exchange("B5")), Detected::Pl72Exchange);
         assert_eq!(with(Some(Family::Pl72), &exchange("%M5")), Detected::Exchange);
+        // A mistake in one operand changes nothing.
+        assert_eq!(with(None, &format!("{}{}{}", rung("I0,05"), rung("T0,D"), rung("%M5"))), Detected::Pl72);
         // Lists and text are PL7's, whatever is configured.
         assert_eq!(with(Some(Family::Pl72), "! %M1 := %M2;\n! %M3 := %M4;\n! %M5 := %M6;\n"), ST);
     }
