@@ -13,6 +13,7 @@ use smol_str::{SmolStr, ToSmolStr as _};
 
 use super::pl7::{self, Kind, Pl7};
 use super::pl72;
+use super::work::Elements;
 use crate::model::UnitModel;
 use crate::model::entity::{Entity, Part};
 use crate::model::expr::{self, ExprId, Exprs, ObjectId};
@@ -20,6 +21,7 @@ use crate::model::ladder::{BlockShape, Flaw, Grid, Layout, Placed, Wire};
 use crate::model::object::{self, Class, Object};
 use crate::model::symbols::{Remark, RemarkKind};
 use crate::model::unit::{Actual, Given, Leave, Mode, OddityKind, Pin, Slot, StatementKind};
+use crate::model::work::{CodeKind, Network};
 use crate::syntax::pl7::ast::{self, Expr, Stmt};
 use crate::syntax::pl7::ladder_words::Element;
 use crate::syntax::{AstNode as _, Language, SyntaxKind, SyntaxNode};
@@ -45,7 +47,15 @@ pub(super) fn rungs<'t>(
     is_transition: bool,
 ) -> (Pl7, Option<ExprId>) {
     let layout = Layout::of(pl7.b.model.language);
-    let mut lowering = Lowering { pl7, layout, is_transition, receptivity: None };
+    let is_section =
+        !pl7.b.model.language.is_chart() && !matches!(pl7.b.model.entity, Entity::Pl7 { part: Part::Chart(_), .. });
+    let kind = match is_transition {
+        true => CodeKind::Receptivity,
+        false if is_section => CodeKind::Section,
+        false => CodeKind::Action,
+    };
+    let piece = pl7.b.model.networks.last().map_or(0, |it| it.piece + 1);
+    let mut lowering = Lowering { pl7, layout, is_transition, piece, kind, receptivity: None };
     for rung in rungs {
         lowering.rung(rung);
     }
@@ -66,6 +76,9 @@ struct Lowering {
     pl7: Pl7,
     layout: Layout,
     is_transition: bool,
+    /// Of the networks of PL7-2.
+    piece: u32,
+    kind: CodeKind,
     /// What the hash coils have taken.
     receptivity: Option<ExprId>,
 }
@@ -92,14 +105,18 @@ struct Use {
 impl Lowering {
     fn rung(&mut self, rung: ast::Rung<'_>) {
         self.pl7.b.next_network();
+        let marks = self.marks();
         if let Some(label) = rung.label() {
             self.pl7.label(&label);
         }
+        let mut length = 0;
         if self.layout == Layout::Pl72 {
             let comment = rung.syntax().tokens().find(|it| it.kind() == SyntaxKind::Comment);
             // What speaks to the linter is no text of the program.
             if let Some(it) = comment.filter(|it| !it.text().contains("plclint:")) {
-                self.pl7.b.model.remarks.push(Remark::new(RemarkKind::Network, it.text(), it.text_range()));
+                let remark = Remark::new(RemarkKind::Network, it.text(), it.text_range());
+                length = remark.characters;
+                self.pl7.b.model.remarks.push(remark);
             }
         }
         let grid = Grid::new(rung, self.layout);
@@ -127,6 +144,25 @@ impl Lowering {
         for it in &grid.placed {
             self.allowed_in_transition(it);
         }
+        if self.layout == Layout::Pl72 {
+            let Elements { listed, unlisted } = Elements::of(rung);
+            let ends = self.marks();
+            self.pl7.b.model.networks.push(Network {
+                kind: self.kind,
+                piece: self.piece,
+                elements: listed,
+                unlisted,
+                comment: length,
+                labels: marks.0..ends.0,
+                jumps: marks.1..ends.1,
+            });
+        }
+    }
+
+    /// Labels and jumps of the unit so far.
+    fn marks(&self) -> (u32, u32) {
+        let model = &self.pl7.b.model;
+        (super::builder::index(model.labels.len()), super::builder::index(model.jumps.len()))
     }
 
     fn flaw(&mut self, flaw: Flaw, range: TextRange) -> &mut crate::model::unit::Oddity {

@@ -10,6 +10,7 @@ mod ladder;
 mod pl7;
 mod pl72;
 mod st;
+mod work;
 mod xref;
 
 use super::UnitModel;

@@ -39,7 +39,7 @@ pub(super) fn mistaken_name(name: &str) -> Option<AddressError> {
 
 /// What an operand is, as far as operations tell operands apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
+pub(super) enum Form {
     Word,
     Value,
     Indexed,
@@ -54,7 +54,7 @@ enum Form {
 }
 
 impl Form {
-    fn of(object: &Object) -> Self {
+    pub(super) fn of(object: &Object) -> Self {
         match (object.class, object.ty) {
             (Class::Indirect | Class::Symbol, _) => Self::Unknown,
             _ if object.indexed => Self::Indexed,

@@ -72,6 +72,13 @@ pub fn is_preset(object: &Object) -> bool {
     block.is_some_and(|it| it.items.iter().any(is_own))
 }
 
+/// Whether an object is the number of the step that a drum is in: `D1,S`.
+pub fn is_drum_step(object: &Object) -> bool {
+    matches!(object.footprint.area, Area::Block("D", _))
+        && object.class == Class::BlockWord
+        && object.footprint.start == 0
+}
+
 /// Where a bit or word of a module is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Channel {

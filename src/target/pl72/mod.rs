@@ -21,8 +21,8 @@ pub use channel::{
     Channels, EXTENSIONS_17, Misfit, Modules, RUN_STOP_INPUT, SECURITY_OUTPUT, UNITS_17, Unit17, UnitKind,
 };
 pub use cost::{
-    COSTS, Cost, Element, InstructionCost, NETWORK_COMMENT_BYTES, SKIPPED_OPERATION, SYSTEM_COSTS, SystemCost,
-    SystemTask, TimeRange, Triggered,
+    COSTS, Cost, Element, InstructionCost, NEAR_BITS, NETWORK_COMMENT_BYTES, SKIPPED_OPERATION, SYSTEM_COSTS,
+    SystemCost, SystemTask, TimeRange, Triggered,
 };
 pub use operation::{
     ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARE_COLUMNS, COMPARISONS, OPERATE_COLUMNS,
@@ -156,7 +156,8 @@ impl Series {
         }
     }
 
-    const fn index(self) -> usize {
+    /// Place in a row of the tables.
+    pub const fn index(self) -> usize {
         self as usize
     }
 }
@@ -340,6 +341,31 @@ impl Model {
     /// Whether the software has a feature.
     pub fn has(&self, feature: Feature) -> bool {
         self.releases().any(|it| it.features.contains(&feature))
+    }
+
+    /// The controller with its version, as a message names it; `None` when no controller is known.
+    pub fn name(&self) -> Option<String> {
+        let controller = self.controller?;
+        Some(self.version.map_or_else(|| controller.name.to_owned(), |it| format!("{} {it}", controller.name)))
+    }
+
+    /// The first version of the same controller that has a feature, later than its own.
+    pub fn first_with(&self, feature: Feature) -> Option<Version> {
+        let releases = self.controller?.releases.iter();
+        let first = releases.filter(|it| it.features.contains(&feature)).map(|it| it.from).min()?;
+        (first > Version::new(0, 0)).then_some(first)
+    }
+
+    /// Whether the complete text block has an item, `T` of `TXT0,T`, on the controller.
+    pub fn has_text_item(&self, item: &str) -> bool {
+        let Some(controller) = self.controller else { return true };
+        let mut kinds = TEXT_KINDS.iter().filter(|it| it.items.contains(&item)).peekable();
+        kinds.peek().is_none() || kinds.any(|it| it.controllers.contains(&controller.name))
+    }
+
+    /// Whether there is a clock (also PL72:618, PL72:1243).
+    pub fn has_clock(&self) -> bool {
+        self.series().any(|it| it == Series::Tsx17)
     }
 
     /// What a feature needs beside the controller, where every release that has it needs something.
