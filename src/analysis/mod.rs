@@ -14,6 +14,7 @@ pub mod facts;
 pub mod features;
 pub mod gaps;
 pub mod known;
+pub mod modules;
 pub mod program;
 pub mod satisfy;
 pub mod size;
