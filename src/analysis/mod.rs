@@ -15,6 +15,7 @@ pub mod features;
 pub mod gaps;
 pub mod known;
 pub mod modules;
+pub mod operands;
 pub mod program;
 pub mod satisfy;
 pub mod size;
