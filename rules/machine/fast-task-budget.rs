@@ -62,7 +62,7 @@ fn coupled(cx: &ProgramCx<'_>, setting: Site, sink: &mut Sink<'_, Site>) {
     let words = cx.program.objects.iter().filter(|it| is_coupled(it.object));
     let Some((object, first)) = words.filter_map(|it| Some((it.object, it.uses.first()?))).next() else { return };
     let message =
-        format!("the fast task cannot run every 5 ms beside a module with words, as `{}` is one of", object.text);
+        format!("the fast task cannot run every 5 ms beside a coupler, and `{}` is a word of one", object.text);
     sink.report(setting, message).related(first.site(), "the module is used here").note("according to PL72:553");
 }
 
