@@ -593,7 +593,7 @@ impl Term {
             from = value + 1;
         };
         // One that a reader would choose.
-        smallest(first.max(0)).or_else(|| smallest(first.max(-8))).or_else(|| smallest(first))
+        smallest(first.max(0)).or_else(|| smallest(first.max(-4))).or_else(|| smallest(first))
     }
 
     fn number(&self, bounds: &[Bound]) -> Option<Given> {
