@@ -26,7 +26,8 @@ use crate::lint::{
     UnreadReason,
 };
 use crate::model::entity::{Entity, Family};
-use crate::model::lower;
+use crate::model::symbols::RemarkKind;
+use crate::model::{UnitModel, lower};
 use crate::source::decode::{Encoding, SourceText};
 use crate::source::detect::{self, Detected, Dialect, FileHint};
 use crate::source::entity_from_address;
@@ -162,6 +163,10 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
         unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
     let settings = db.project().settings(db);
     let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
+    if let Some(condition) = settings.condition_of(unit.entity(db)).filter(|_| family == Family::Pl7) {
+        facts.run_under(condition);
+    }
+    facts.commented = is_commented(tree.syntax(), &model);
     let target = settings.target_or(family, *named_controller(db, unit.file(db)));
     let cx = UnitCx::new(&model, &tree, text, settings, &target);
     let findings = run_rules(settings, |rule, findings| match rule.check {
@@ -178,6 +183,14 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
 #[salsa::tracked]
 pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitFacts> {
     analysis(db, unit).facts.clone()
+}
+
+fn is_commented(root: syntax::SyntaxNode<'_>, model: &UnitModel) -> bool {
+    match model.language {
+        Language::Exchange => model.remarks.iter().any(|it| it.kind == RemarkKind::Module && it.characters > 0),
+        Language::Awl(_) if root.descendants().any(|it| it.kind() == SyntaxKind::TitleLine) => true,
+        _ => root.descendant_tokens().any(|it| matches!(it.kind(), SyntaxKind::Comment | SyntaxKind::UnclosedComment)),
+    }
 }
 
 /// Whether the unit is PL7 text that does not say what it is: a listing shown in a document, part of something unread.

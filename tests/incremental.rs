@@ -58,6 +58,7 @@ DEST_CONNECTOR 1 AT (C 0,L 3)
 END_PAGE
 PAGE 1
 SOURCE_CONNECTOR 0 AT (C 0,L 0)
+(* fill *)
 STEP 1 AT (C 0,L 1) :
 END_STEP
 END_PAGE
@@ -172,7 +173,7 @@ fn an_edit_in_a_page_runs_that_page_alone() {
     let mut setup = setup(&[("peinture.gr7", CHART, Dialect::Auto)]);
     let count = |messages: &[String], code: &str| messages.iter().filter(|it| it.starts_with(code)).count();
     assert_eq!(count(&setup.check(), "G005"), 0);
-    setup.edit(0, "STEP 1 AT (C 0,L 1)", "(* fill *)\nSTEP 1 AT (C 0,L 1)");
+    setup.edit(0, "(* fill *)", "(* fill\nslowly *)");
     setup.check();
     let executed = setup.executed();
     assert_eq!(Setup::count(&executed, "analysis"), 1, "{executed:?}");

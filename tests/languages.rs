@@ -8,7 +8,7 @@ use plclint::source::detect::Dialect;
 const OF_ONE_LANGUAGE: [&str; 3] = ["I", "T", "L"];
 
 /// What a whole program should have: these here are sentences of one.
-const OF_WHOLE_PROGRAMS: [&str; 2] = ["P008", "V004"];
+const OF_WHOLE_PROGRAMS: [&str; 3] = ["N005", "P008", "V004"];
 
 /// Code of each finding that no language has alone, with the object that its message names.
 fn found(text: &str) -> Vec<(&'static str, String)> {

@@ -3,13 +3,11 @@
 use crate::analysis::Site;
 use crate::analysis::program::Context;
 use crate::lint::{ProgramCx, Sink};
-use crate::model::unit::Callee;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for call in &cx.program.calls {
-        let Callee::Instance(name) = &call.it.callee else { continue };
+    for (call, ..) in cx.program.instance_calls() {
         let event = cx.program.tasks(call.unit).find(|it| matches!(it, Context::Event(_)));
-        if let Some(Context::Event(number)) = event.filter(|_| cx.program.dfb_of(name).is_some()) {
+        if let Some(Context::Event(number)) = event {
             let message = format!("`{}` is a DFB, which the event task EVT{number} cannot call", call.it.text);
             sink.report(call.site(), message);
         }

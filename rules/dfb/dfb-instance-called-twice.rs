@@ -5,26 +5,27 @@ use std::collections::BTreeMap;
 use crate::analysis::Site;
 use crate::analysis::program::GlobalCall;
 use crate::lint::{ProgramCx, Sink};
-use crate::model::unit::Callee;
+
+/// Of more calls of one instance, only so many are compared.
+const MAX_COMPARED: usize = 64;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut calls: BTreeMap<&str, Vec<&GlobalCall<'_>>> = BTreeMap::new();
-    for call in cx.program.calls.iter().filter(|it| it.it.reachable) {
-        if let Callee::Instance(name) = &call.it.callee
-            && cx.program.dfb_of(name).is_some()
-        {
-            calls.entry(name).or_default().push(call);
-        }
+    for (call, name, ..) in cx.program.instance_calls().filter(|it| it.0.it.reachable) {
+        calls.entry(name).or_default().push(call);
     }
     for (_, mut calls) in calls {
         calls.sort_by_key(|it| (cx.program.order[it.unit as usize], it.index));
-        let Some((first, others)) = calls.split_first() else { continue };
-        let mut again = others.iter().filter(|it| cx.program.calls_in_same_scan(first, it));
-        if let Some(second) = again.next() {
-            sink.report(second.site(), format!("`{}` is called in more than one place of a scan", second.it.text))
-                .label("called again here, with the values that the call before left")
-                .related(first.site(), "called here")
-                .related_all(again.map(|it| (it.site(), "also called here".to_owned())));
-        }
+        calls.truncate(MAX_COMPARED);
+        let meets = |at: usize, other: usize| at != other && cx.program.calls_in_same_scan(calls[at], calls[other]);
+        // The first call that some call before it can share a scan with.
+        let Some(second) = (1..calls.len()).find(|&at| (0..at).any(|before| meets(before, at))) else { continue };
+        let call = calls[second];
+        let (before, after): (Vec<usize>, Vec<usize>) =
+            (0..calls.len()).filter(|&it| meets(second, it)).partition(|it| *it < second);
+        sink.report(call.site(), format!("`{}` is called in more than one place of a scan", call.it.text))
+            .label("called again here, with the values that the call before left")
+            .related_all(before.iter().map(|&it| (calls[it].site(), "called here".to_owned())))
+            .related_all(after.iter().map(|&it| (calls[it].site(), "also called here".to_owned())));
     }
 }

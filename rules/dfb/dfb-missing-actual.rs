@@ -3,26 +3,35 @@
 use crate::analysis::Site;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::dfb::{Item, Role};
-use crate::model::unit::Callee;
+use crate::model::unit::Slot;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for call in cx.program.calls.iter().filter(|it| it.it.full) {
-        let Callee::Instance(name) = &call.it.callee else { continue };
-        let Some((unit, interface)) = cx.program.dfb_of(name).filter(|it| !it.1.items.is_empty()) else { continue };
-        let site = call.site();
-        let at = |it: &Item| Site { unit, anchor: it.anchor };
-        let count = interface.parameters().count();
-        if let Some(last) = call.it.given.last().filter(|it| **it as usize >= count) {
-            let message = format!("`{}` takes {count} parameters, and is given {}", call.it.text, last + 1);
-            sink.report(site, message).related(Site { unit, anchor: interface.anchor }, "the type of the DFB");
+    for (call, _, unit, interface) in cx.program.instance_calls() {
+        if !call.it.full || interface.items.is_empty() {
             continue;
         }
+        let (site, text, actuals) = (call.site(), &call.it.text, &call.it.actuals);
+        let at = |it: &Item| Site { unit, anchor: it.anchor };
+        if let Some(last) = actuals.iter().rfind(|it| interface.position(it.slot).is_none()) {
+            let (place, message) = match last.slot {
+                Slot::Position(last) => {
+                    let count = interface.parameters().count();
+                    (site, format!("`{text}` takes {count} parameters, and is given {}", last + 1))
+                }
+                Slot::Left(_) | Slot::Right(_) => {
+                    (Site { unit: call.unit, anchor: last.anchor }, format!("`{text}` has no pin in this row"))
+                }
+            };
+            sink.report(place, message).related(Site { unit, anchor: interface.anchor }, "the type of the DFB");
+            continue;
+        }
+        let given: Vec<u32> = actuals.iter().filter_map(|it| interface.position(it.slot)).collect();
         let is_needed = |it: &Item| it.role == Role::InOut || it.role == Role::Input && it.ty.is_array();
-        let open = (0..).zip(interface.parameters()).filter(|it| is_needed(it.1) && !call.it.given.contains(&it.0));
+        let open = (0..).zip(interface.parameters()).filter(|it| is_needed(it.1) && !given.contains(&it.0));
         let open: Vec<&Item> = open.map(|it| it.1).collect();
         if let [first, ..] = &open[..] {
             let what = if first.role == Role::InOut { "in/out" } else { "table" };
-            sink.report(site, format!("`{}` is called without its {what} `{}`", call.it.text, first.name))
+            sink.report(site, format!("`{text}` is called without its {what} `{}`", first.name))
                 .related_all(open.iter().map(|it| (at(it), "this must be given".to_owned())));
         }
     }

@@ -6,22 +6,21 @@ use crate::analysis::Site;
 use crate::analysis::program::GlobalCall;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::dfb::Role;
-use crate::model::unit::Callee;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut calls: BTreeMap<&str, Vec<&GlobalCall<'_>>> = BTreeMap::new();
-    for call in cx.program.calls.iter().filter(|it| it.it.reachable && it.it.full) {
-        if let Callee::Instance(name) = &call.it.callee {
-            calls.entry(name).or_default().push(call);
-        }
+    for (call, name, ..) in cx.program.instance_calls().filter(|it| it.0.it.reachable && it.0.it.full) {
+        calls.entry(name).or_default().push(call);
     }
     for (name, calls) in calls {
         let Some((unit, interface)) = cx.program.dfb_of(name) else { continue };
         // A table must be given: F013 says so.
         let inputs = (0..).zip(interface.parameters()).filter(|it| it.1.role == Role::Input && !it.1.ty.is_array());
         for (position, item) in inputs {
-            let (given, open): (Vec<&GlobalCall<'_>>, Vec<&GlobalCall<'_>>) =
-                calls.iter().copied().partition(|it| it.it.given.contains(&position));
+            let (given, open): (Vec<&GlobalCall<'_>>, Vec<&GlobalCall<'_>>) = calls
+                .iter()
+                .copied()
+                .partition(|call| call.it.actuals.iter().any(|it| interface.position(it.slot) == Some(position)));
             let (Some(first), [call, others @ ..]) = (given.first(), &open[..]) else { continue };
             let message =
                 format!("`{}` is called without its input `{}`, which keeps its last value", call.it.text, item.name);

@@ -14,8 +14,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let mut finding = sink
             .report(edge.site(), format!("the edge of `{name}` stays while the bit is not written"))
             .related(write.site(), "not written in every scan");
-        if let Some(call) = cx.program.conditional_call(write.unit).filter(|_| cx.program.is_passed_by(write.unit)) {
-            finding = finding.related(call.site(), "this call depends on a condition");
+        if let Some((site, why)) = cx.program.passed_by(write.unit).filter(|_| cx.program.is_passed_by(write.unit)) {
+            finding = finding.related(site, why);
         }
         finding.note("an edge is there until its bit is written again (PL7:1468)");
     }

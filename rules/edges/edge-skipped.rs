@@ -32,8 +32,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let mut finding = sink.report(first.site(), format!("{what} is not tested in every scan"));
         if let Some(jump) = first.it.skipped_by {
             finding = finding.related(Site { unit: first.unit, anchor: jump }, "this jump can skip it");
-        } else if let Some(call) = program.conditional_call(first.unit) {
-            finding = finding.related(call.site(), "this call depends on a condition");
+        } else if let Some((site, why)) = program.passed_by(first.unit) {
+            finding = finding.related(site, why);
         }
         finding.related_all(others);
     }

@@ -3,8 +3,12 @@
 use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
-use crate::model::symbols::RemarkKind;
-use crate::target::pl7::{SECTION_COMMENT_LENGTH, SYMBOL_COMMENT_LENGTH};
+use crate::model::symbols::{Remark, RemarkKind};
+use crate::syntax::{Language, SyntaxKind};
+use crate::target::pl7::{
+    DFB_ITEM_COMMENT_LENGTH, IL_COMMENT_LENGTH, RUNG_COMMENT_LENGTH, SECTION_COMMENT_LENGTH, ST_COMMENT_LENGTH,
+    SYMBOL_COMMENT_LENGTH,
+};
 use crate::target::pl72::COMMENT_LENGTH;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
@@ -12,12 +16,32 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         let (limit, what) = match remark.kind {
             RemarkKind::Symbol => (SYMBOL_COMMENT_LENGTH, "symbol"),
             RemarkKind::Module => (SECTION_COMMENT_LENGTH, "section or subroutine"),
+            RemarkKind::Item => (DFB_ITEM_COMMENT_LENGTH, "parameter or variable of a DFB"),
             RemarkKind::Network => (COMMENT_LENGTH, "network"),
         };
         if remark.characters > limit.value {
             let message =
                 format!("the comment of a {what} has {} characters, {} are allowed", remark.characters, limit.value);
             sink.report(remark.range, message).note(format!("the limit is that of {}", limit.source));
+        }
+    }
+    let (limit, what) = match cx.model.language {
+        Language::Pl7Ld => (RUNG_COMMENT_LENGTH, "ladder"),
+        Language::Pl7Il => (IL_COMMENT_LENGTH, "a list of instructions"),
+        Language::Pl7St => (ST_COMMENT_LENGTH, "structured text"),
+        _ => return,
+    };
+    // Most units hold no long comment: their tokens need no look.
+    let is_long = |piece: &str| piece.find("(*").is_some_and(|at| piece.len() - at > limit.value as usize);
+    if !cx.text.split("*)").any(is_long) {
+        return;
+    }
+    let is_item = |range: TextRange| cx.model.remarks.iter().any(|it| it.range == range);
+    for token in cx.parse.syntax().descendant_tokens().filter(|it| it.kind() == SyntaxKind::Comment) {
+        let characters = Remark::inner(token.text()).chars().count();
+        if characters > limit.value as usize && !is_item(token.text_range()) {
+            let message = format!("a comment in {what} has {characters} characters, {} are allowed", limit.value);
+            sink.report(token.text_range(), message).note(format!("the limit is that of {}", limit.source));
         }
     }
 }

@@ -30,10 +30,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let Some(read) = uses().find(|it| it.mode.reads() && program.sure[it.unit as usize]) else { continue };
         let block = items.iter().find(|it| matches!(it.object.class, Class::Block | Class::Timer));
         let name = block.map_or("", |it| &it.object.text);
-        let message = format!("`{name}` is scanned by code that is not called in every scan, and read here");
+        let message = format!("`{name}` is scanned by code that does not run in every scan, and read here");
         let mut finding = sink.report(read.site(), message).related(start.site(), "scanned here");
-        if let Some(call) = program.conditional_call(start.unit) {
-            finding = finding.related(call.site(), "this call depends on a condition");
+        if let Some((site, why)) = program.passed_by(start.unit) {
+            finding = finding.related(site, why);
         }
         finding.note("while it is not scanned, a running timer runs on, and a stopped one does not start");
     }

@@ -12,6 +12,7 @@ use super::Site;
 use super::facts::{UnitFacts, Use};
 use crate::model::chart::{self, ActionKind, CodeLanguage, ConnectorKind, Graph, Node, StepKind, StepName};
 use crate::model::entity::{Entity, Task};
+use crate::model::expr::{Exprs, Guard};
 use crate::model::object::{Area, Footprint};
 
 /// What a unit tells of its part of a chart.
@@ -38,6 +39,8 @@ pub struct FactStep {
     pub text: SmolStr,
     pub kind: StepKind,
     pub anchor: u32,
+    /// Whether a comment stands in it.
+    pub commented: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,9 +48,30 @@ pub struct FactTransition {
     /// Nodes of the unit.
     pub sources: Vec<Node>,
     pub targets: Vec<Node>,
-    /// Whether a receptivity is programmed.
-    pub has_receptivity: bool,
+    pub receptivity: FactReceptivity,
     pub anchor: u32,
+}
+
+/// The condition of a transition.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FactReceptivity {
+    /// Not programmed: always false (PL7:4651).
+    Missing,
+    /// Not understood, or too large.
+    Unread,
+    Guard(Guard),
+}
+
+impl FactReceptivity {
+    fn new(it: chart::Receptivity, exprs: &Exprs) -> Self {
+        /// A receptivity of more expressions than this is not looked into.
+        const MOST: usize = 1000;
+        match it {
+            chart::Receptivity::Missing => Self::Missing,
+            chart::Receptivity::Unread => Self::Unread,
+            chart::Receptivity::Value(value) => exprs.cut(value, MOST).map_or(Self::Unread, Self::Guard),
+        }
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,7 +98,7 @@ pub struct FactAction {
 }
 
 impl ChartFacts {
-    pub fn new(chart: &chart::Chart, entity: &Entity) -> Self {
+    pub fn new(chart: &chart::Chart, entity: &Entity, exprs: &Exprs) -> Self {
         let sorted = |steps: &[u32]| {
             let mut steps = steps.to_vec();
             steps.sort_unstable();
@@ -96,7 +120,13 @@ impl ChartFacts {
             steps: chart
                 .steps
                 .iter()
-                .map(|it| FactStep { name: it.name.clone(), text: it.text.clone(), kind: it.kind, anchor: it.anchor })
+                .map(|it| FactStep {
+                    name: it.name.clone(),
+                    text: it.text.clone(),
+                    kind: it.kind,
+                    anchor: it.anchor,
+                    commented: it.commented,
+                })
                 .collect(),
             transitions: chart
                 .transitions
@@ -104,7 +134,7 @@ impl ChartFacts {
                 .map(|it| FactTransition {
                     sources: it.sources.clone(),
                     targets: it.targets.clone(),
-                    has_receptivity: it.receptivity != chart::Receptivity::Missing,
+                    receptivity: FactReceptivity::new(it.receptivity, exprs),
                     anchor: it.anchor,
                 })
                 .collect(),

@@ -16,7 +16,7 @@ use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object};
-use crate::model::unit::{Access, Call, Callee, Formal, Mode, Section, StatementKind};
+use crate::model::unit::{Access, Actual, Call, Callee, Formal, Mode, Section, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -90,10 +90,10 @@ pub struct FactCall {
     /// Place of the instance.
     pub instance_anchor: Option<u32>,
     pub full: bool,
-    /// Number of parameters given.
-    pub arguments: u32,
-    /// Of an instance of a DFB: positions of the parameters given, from 0, in order.
-    pub given: Vec<u32>,
+    /// What an instance of a DFB is given; objects are indices into [`UnitFacts::objects`].
+    pub actuals: Vec<Actual>,
+    /// See [`Call::too_close`].
+    pub too_close: Option<u32>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -148,6 +148,11 @@ pub struct UnitFacts {
     pub chart: Option<Box<ChartFacts>>,
     /// The parameters and variables of a DFB type.
     pub interface: Option<Box<Interface>>,
+    /// The bit under which the section runs that the unit belongs to, an index into `objects`. The section is passed by
+    /// while it is 0.
+    pub condition: Option<u32>,
+    /// Whether a comment stands in the unit. Of the text around programs, whether one is said to be that of a program.
+    pub commented: bool,
     /// Of a unit of PL7-2.
     pub cost: Option<Box<UnitCost>>,
 }
@@ -269,10 +274,36 @@ impl UnitFacts {
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
-            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity))),
+            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity, &model.exprs))),
             interface: model.interface.clone(),
+            condition: None,
+            commented: false,
             cost: UnitCost::new(model),
         }
+    }
+
+    /// Says under which condition the section runs. The bit is read before the unit runs.
+    pub fn run_under(&mut self, condition: &Object) {
+        let object = u32::try_from(self.objects.len()).unwrap_or(u32::MAX);
+        self.objects.push(FactObject::new(condition, false, None));
+        self.condition = Some(object);
+        let read = Use {
+            object,
+            mode: Mode::Read,
+            anchor: 0,
+            exposed: true,
+            group: u32::MAX,
+            conditional: false,
+            path: Exprs::TRUE.0,
+            skipped_by: None,
+            stale: false,
+            constant: None,
+            own: false,
+            holds: false,
+            network: 0,
+            parameter: None,
+        };
+        self.uses.insert(0, read);
     }
 }
 
@@ -348,9 +379,9 @@ fn set(list: &mut [Option<ExprId>], access: u32, it: ExprId) {
     }
 }
 
-/// Accesses of some modes, those of one object together and in order; objects with one alone are left out.
-fn by_object(model: &UnitModel, wanted: impl Fn(Mode) -> bool) -> Vec<(u32, &Access)> {
-    let mut list: Vec<(u32, &Access)> = (0..).zip(&model.accesses).filter(|it| wanted(it.1.mode)).collect();
+/// Accesses of some sort, those of one object together and in order; objects with one alone are left out.
+fn by_object(model: &UnitModel, wanted: impl Fn(&Access) -> bool) -> Vec<(u32, &Access)> {
+    let mut list: Vec<(u32, &Access)> = (0..).zip(&model.accesses).filter(|it| wanted(it.1)).collect();
     list.sort_by_key(|it| it.1.object);
     let is_alone: Vec<bool> = (0..list.len())
         .map(|at| {
@@ -367,7 +398,7 @@ fn by_object(model: &UnitModel, wanted: impl Fn(Mode) -> bool) -> Vec<(u32, &Acc
 /// Group of each access: equal for writes of one object of which at most one takes effect in a scan.
 fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
     // What a call does to an actual parameter shows in the program alone.
-    let drives = |it: Mode| it.assigns() || matches!(it, Mode::Store | Mode::InOut | Mode::Drive(_));
+    let drives = |it: &Access| it.mode.assigns() || matches!(it.mode, Mode::Store | Mode::InOut | Mode::Drive(_));
     let writes = by_object(model, drives);
     let mut groups: Vec<u32> = (0..u32::try_from(model.accesses.len()).unwrap_or(u32::MAX)).collect();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
@@ -397,7 +428,7 @@ fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
 
 fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
     let stores = |it: Mode| matches!(it, Mode::Set | Mode::Reset | Mode::EdgeMemory);
-    let writes = by_object(model, |it| stores(it) || it.assigns() || it == Mode::InOut);
+    let writes = by_object(model, |it| stores(it.mode) || it.mode.assigns() || it.mode == Mode::InOut);
     let mut pairs = Vec::new();
     for list in writes.chunk_by(|a, b| a.1.object == b.1.object) {
         for (at, second) in list.iter().take(MAX_COMPARED).enumerate() {
@@ -461,11 +492,8 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
                 .filter(|(range, anchor)| model.anchors.get(*anchor as usize) == Some(range))
                 .map(|it| it.1),
             full: call.full,
-            arguments: u32::try_from(call.arguments.len()).unwrap_or(u32::MAX),
-            given: match call.callee {
-                Callee::Instance(_) => call.arguments.iter().map(|it| it.position).collect(),
-                _ => Vec::new(),
-            },
+            actuals: call.actuals.clone(),
+            too_close: call.too_close,
         })
         .collect()
 }

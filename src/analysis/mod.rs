@@ -17,6 +17,7 @@ pub mod known;
 pub mod modules;
 pub mod operands;
 pub mod program;
+pub mod reach;
 pub mod satisfy;
 pub mod size;
 pub mod symbols;

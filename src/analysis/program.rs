@@ -9,11 +9,12 @@ use smol_str::SmolStr;
 use super::Site;
 use super::chart::{self, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
+use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
-use crate::model::unit::{Callee, Formal, Mode, Pin, Section};
+use crate::model::unit::{Actual, Callee, Formal, Given, Mode, Pin, Section};
 use crate::syntax::Language;
 
 /// What runs code: code of one context never interrupts itself.
@@ -207,6 +208,14 @@ impl GlobalCall<'_> {
     }
 }
 
+/// A section that runs while a bit is 1.
+#[derive(Debug)]
+pub struct ConditionalSection<'a> {
+    pub condition: &'a Object,
+    /// Its parts, in the order of execution.
+    pub units: Vec<u32>,
+}
+
 #[derive(Debug)]
 pub struct ProgramIndex<'a> {
     pub family: Family,
@@ -340,18 +349,78 @@ impl<'a> ProgramIndex<'a> {
         self.reached[unit as usize] && !self.sure[unit as usize] && !self.is_startup(unit)
     }
 
-    /// A call that depends on a condition, of those that lead to a unit which does not run in each scan.
-    pub fn conditional_call(&self, unit: u32) -> Option<&GlobalCall<'a>> {
+    /// The condition of the section that a unit belongs to.
+    pub fn condition(&self, unit: u32) -> Option<&'a Object> {
+        let facts = self.units.get(unit as usize)?;
+        Some(&facts.objects.get(facts.condition? as usize)?.object)
+    }
+
+    /// Whether two units belong to sections that one bit lets run, so that both run or none.
+    pub fn run_together(&self, a: u32, b: u32) -> bool {
+        let place = |unit: u32| self.condition(unit).filter(|it| it.is_fixed()).map(|it| &it.footprint);
+        place(a).is_some_and(|it| place(b) == Some(it))
+    }
+
+    /// Why a unit does not run in each scan, with the place: a call that depends on a condition, of those that lead to it,
+    /// or the condition of a section.
+    pub fn passed_by(&self, unit: u32) -> Option<(Site, String)> {
         let mut seen = FxHashSet::default();
         let mut at = unit;
         while seen.insert(at) {
+            if let Some(condition) = self.condition(at) {
+                return Some((Self::heading(at), format!("this section runs while `{}` is 1", condition.text)));
+            }
             let callers = self.callers[at as usize].iter().map(|&it| &self.calls[it as usize]);
             if let Some(call) = callers.clone().find(|it| it.it.conditional) {
-                return Some(call);
+                return Some((call.site(), "this call depends on a condition".to_owned()));
             }
             at = callers.map(|it| it.unit).next()?;
         }
         None
+    }
+
+    /// The sections that have a condition, in the order of execution.
+    pub fn conditional_sections(&self) -> Vec<ConditionalSection<'a>> {
+        let mut units: Vec<u32> = (0..as_index(self.units.len())).filter(|&it| self.condition(it).is_some()).collect();
+        units.sort_by_key(|&it| self.order[it as usize]);
+        let mut sections: Vec<ConditionalSection<'a>> = Vec::new();
+        let mut known = FxHashMap::default();
+        for unit in units {
+            let (Some(condition), Entity::Pl7 { task, section, .. }) = (self.condition(unit), self.entity(unit)) else {
+                continue;
+            };
+            let next = sections.len();
+            let at = *known.entry((*task, section.as_ref().map(|it| key(it)))).or_insert(next);
+            if at == next {
+                sections.push(ConditionalSection { condition, units: Vec::new() });
+            }
+            sections[at].units.push(unit);
+        }
+        sections
+    }
+
+    /// The units that run only when one of some others does: those themselves, and the subroutines that they alone call.
+    pub fn run_by(&self, units: &[u32]) -> FxHashSet<u32> {
+        let mut within: FxHashSet<u32> = units.iter().copied().collect();
+        let mut open: Vec<u32> = units.to_vec();
+        let mut callees: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        for call in self.calls.iter().filter(|it| it.it.reachable) {
+            callees.entry(call.unit).or_default().extend(call.target);
+        }
+        callees.values_mut().for_each(|it| {
+            it.sort_unstable();
+            it.dedup();
+        });
+        // A subroutine is asked again for each of its callers.
+        while let Some(at) = open.pop() {
+            for &callee in callees.get(&at).into_iter().flatten() {
+                let mut callers = self.callers[callee as usize].iter().map(|&it| self.calls[it as usize].unit);
+                if !self.is_entry(callee) && callers.all(|it| within.contains(&it)) && within.insert(callee) {
+                    open.push(callee);
+                }
+            }
+        }
+        within
     }
 
     /// Whether some run of the unit passes by all its writes of the object that one of its uses is of: number of the
@@ -468,6 +537,28 @@ impl<'a> ProgramIndex<'a> {
     pub fn dfb_of(&self, instance: &str) -> Option<(u32, &'a Interface)> {
         let &unit = self.names.get(&UnitName::Instance(key(instance)))?;
         Some((unit, self.units.get(unit as usize)?.interface.as_deref()?))
+    }
+
+    /// The calls of instances of DFBs whose type the program holds, with its unit and interface.
+    pub fn instance_calls(&self) -> impl Iterator<Item = (&GlobalCall<'a>, &str, u32, &'a Interface)> {
+        self.calls.iter().filter_map(|call| {
+            let Callee::Instance(name) = &call.it.callee else { return None };
+            let (unit, interface) = self.dfb_of(name)?;
+            Some((call, name.as_str(), unit, interface))
+        })
+    }
+
+    /// The object that a call gives to a parameter.
+    pub fn given_object(&self, unit: u32, actual: &Actual) -> Option<&'a Object> {
+        let Given::Object(id) = actual.given else { return None };
+        Some(&self.units.get(unit as usize)?.objects.get(id.0 as usize)?.object)
+    }
+
+    /// Whether a symbol names an address, so that it is no instance of a DFB.
+    pub fn names_address(&self, symbol: &str) -> bool {
+        let name = key(symbol);
+        let mut symbols = self.units.iter().flat_map(|it| &it.symbols);
+        symbols.any(|it| it.object.is_some() && key(&it.name) == name)
     }
 
     /// Pairs of distinct objects that share memory, by index, the earlier address first.
@@ -595,10 +686,12 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>
     (contexts, reached)
 }
 
-/// Which units surely run. What belongs to a step of a chart runs while the step is active.
+/// Which units surely run. What belongs to a step of a chart runs while the step is active, a section that has a condition
+/// while that is 1.
 fn sure(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<bool> {
     let is_chart = |it: &Entity| matches!(it, Entity::Pl7 { part: Part::Chart(_), .. });
-    let mut sure: Vec<bool> = units.iter().map(|it| is_entry(&it.entity) && !is_chart(&it.entity)).collect();
+    let is_sure = |it: &UnitFacts| is_entry(&it.entity) && !is_chart(&it.entity) && it.condition.is_none();
+    let mut sure: Vec<bool> = units.iter().map(|it| is_sure(it)).collect();
     let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
     for call in calls.iter().filter(|it| it.it.reachable && !it.it.conditional) {
         callees[call.unit as usize].extend(call.target);
@@ -679,7 +772,7 @@ fn pl7_2_rank(entity: &Entity) -> u32 {
 /// Whether the units hold the program's cyclic entry point. The master task of PL7-2 is one text, or the parts of a Grafcet
 /// program, of which none but the chart must be there (PL72:1505-1511).
 fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
-    units.iter().any(|it| match (family, &it.entity) {
+    let is_named = units.iter().any(|it| match (family, &it.entity) {
         // A cross-reference is one of a whole project.
         _ if it.language == Language::Pl7Xref => true,
         (Family::Pl72, Entity::Pl7 { task, part, .. }) => {
@@ -688,7 +781,27 @@ fn has_main(family: Family, units: &[&UnitFacts]) -> bool {
         (_, Entity::Pl7 { part: Part::Main, .. }) => true,
         (_, Entity::Block { name: BlockName::Number(BlockKind::Ob, 1), .. }) => true,
         _ => false,
-    })
+    });
+    is_named || family == Family::Pl7 && has_chart(units)
+}
+
+/// Whether the master task of PL7 runs a chart that is all of it: the text has the initial steps, and the code before or
+/// behind the chart, or actions that drive outputs. A chart that drives none by itself was exported without its posterior
+/// processing.
+fn has_chart(units: &[&UnitFacts]) -> bool {
+    let is_initial = |it: &UnitFacts| {
+        let chart = it.chart.as_ref().filter(|chart| chart.defines);
+        chart.is_some_and(|chart| chart.steps.iter().any(|step| step.kind == StepKind::Initial))
+    };
+    let is_chart = |it: &UnitFacts| matches!(it.entity, Entity::Pl7 { task: Task::Mast, part: Part::Chart(_), .. });
+    let is_around = |it: &UnitFacts| {
+        matches!(it.entity, Entity::Pl7 { task: Task::Mast, part: Part::Preliminary | Part::Posterior, .. })
+    };
+    let drives = |it: &UnitFacts| {
+        let class = |object: u32| it.objects.get(object as usize).map(|it| it.object.class);
+        it.uses.iter().any(|it| it.mode.writes() && class(it.object) == Some(Class::Output))
+    };
+    units.iter().any(|it| is_chart(it) && is_initial(it)) && units.iter().any(|it| is_around(it) || drives(it))
 }
 
 /// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
@@ -706,25 +819,25 @@ fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -
 /// What a called block of the program does with an actual parameter.
 fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit: u32, it: &Use) -> Mode {
     let Some((call, formal)) = &it.parameter else { return it.mode };
-    let Some(target) = targets.get(&(unit, *call)).and_then(|&target| units.get(target as usize)) else {
-        return it.mode;
-    };
+    let Some(&target) = targets.get(&(unit, *call)) else { return it.mode };
+    let facts = units[target as usize];
     match formal {
         Formal::Name(name) => {
-            match target.declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.section) {
+            let declared = facts.declared.iter().find(|it| it.name.eq_ignore_ascii_case(name));
+            match declared.map(|it| it.section) {
                 Some(Section::Input) => Mode::Read,
                 Some(Section::Output) => Mode::Output,
                 _ => it.mode,
             }
         }
-        Formal::Position(position) => {
-            let mut parameters = target.interface.iter().flat_map(|it| it.parameters());
-            match parameters.nth(*position as usize).map(|it| it.role) {
-                Some(Role::Input) => Mode::Read,
-                Some(Role::Output) => Mode::Output,
-                _ => it.mode,
-            }
-        }
+        // What cannot be written is not, whatever the call asks for: rule F014 says so.
+        Formal::Slot(_) if it.mode == Mode::Read => it.mode,
+        Formal::Slot(slot) => match facts.interface.as_ref().and_then(|it| it.parameter(*slot)).map(|it| it.role) {
+            Some(Role::Input) => Mode::Read,
+            Some(Role::Output) => Mode::Output,
+            Some(Role::InOut) => Mode::InOut,
+            _ => it.mode,
+        },
     }
 }
 
@@ -821,6 +934,32 @@ mod tests {
         assert!(complete(&["PL7-2 SEQ"]));
         assert!(!complete(&["PL7-2 PRL", "PL7-2 POST"]));
         assert!(!complete(&["PL7-2 FAST"]));
+    }
+
+    #[test]
+    fn a_chart_that_is_all_of_the_master_task() {
+        let chart = |action: &str| {
+            format!(
+                "PROGRAM MAST 'Chart'\nPAGE 0\nINITIAL_STEP 0 AT (C 4,L 3) : END_STEP\nSTEP 1 AT (C 4,L 5) :\n\
+                 ACTION (N1,ST) : (*PHRASE*) {action} (*END_PHRASE*) END_ACTION\nEND_STEP\nEND_PAGE\nEND_PROGRAM\n"
+            )
+        };
+        let unit = |address: &str, text: &str, language| {
+            let parse = syntax::parse(language, text);
+            assert_eq!(parse.errors(), [], "{text}");
+            let entity = entity_from_address(address).unwrap_or_else(|| panic!("{address}"));
+            UnitFacts::new(&lower::lower(parse.syntax(), text, entity, language))
+        };
+        let page = |address: &str, action: &str| unit(address, &chart(action), Language::Pl7Gr7);
+        let complete = |units: &[UnitFacts]| ProgramIndex::new(Family::Pl7, units.iter().collect()).complete;
+        assert!(complete(&[page("MAST - CHART", "SET %Q2.0;")]));
+        assert!(!complete(&[page("MAST - CHART", "SET %M0;")]), "what drives the outputs is elsewhere");
+        let post = unit("MAST - POST", "", Language::Pl7St);
+        assert!(complete(&[page("MAST - CHART", "SET %M0;"), post.clone()]));
+        assert!(!complete(&[post]));
+        // An action shown alone is no chart.
+        let action = unit("MAST - CHART - PAGE 0 %X1 P1", "! SET %Q2.0;", Language::Pl7St);
+        assert!(!complete(&[action]));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use super::settings::Settings;
 use super::suppress::Leftover;
 use crate::analysis::program::ProgramIndex;
+use crate::analysis::reach::Study;
 use crate::model::UnitModel;
 use crate::model::pl7_kinds::Kinds;
 use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
@@ -126,11 +127,18 @@ pub struct ProgramCx<'a> {
     pub target: &'a Target,
     overlaps: OnceCell<Vec<(u32, u32)>>,
     neighbours: OnceCell<FxHashMap<u32, Vec<u32>>>,
+    studies: OnceCell<Vec<Study<'a, 'a>>>,
 }
 
 impl<'a> ProgramCx<'a> {
     pub(crate) fn new(program: &'a ProgramIndex<'a>, settings: &'a Settings, target: &'a Target) -> Self {
-        Self { program, settings, target, overlaps: OnceCell::new(), neighbours: OnceCell::new() }
+        let (overlaps, neighbours, studies) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Self { program, settings, target, overlaps, neighbours, studies }
+    }
+
+    /// The charts of the program with what they reach, made once for all rules.
+    pub fn studies(&self) -> &[Study<'a, 'a>] {
+        self.studies.get_or_init(|| Study::all(self.program))
     }
 
     /// See [`ProgramIndex::overlaps`].

@@ -10,16 +10,19 @@ use std::sync::Arc;
 
 use ignore::gitignore::{Gitignore, GitignoreBuilder};
 use serde::Deserialize;
+use smol_str::SmolStr;
 use toml::Spanned;
 
 use super::finding::Severity;
 use super::rule::{Rule, rules};
 use super::select::{Selection, Selector};
 use crate::analysis::program::Context;
-use crate::model::entity::Family;
+use crate::model::entity::{Entity, Family, Part, Task};
 use crate::model::object::{self, Class, Object};
 use crate::source::decode::Encoding;
+use crate::source::entity_from_address;
 use crate::source::walk::WalkOptions;
+use crate::target::pl7::MODULE_CHANNELS;
 use crate::target::pl72::Series;
 use crate::target::{Counted, CountedBy, Target};
 
@@ -113,6 +116,8 @@ struct File {
     entity: Vec<EntityHint>,
     task: Vec<TaskConfig>,
     event: Vec<EventConfig>,
+    section: Vec<SectionConfig>,
+    module: Vec<ModuleConfig>,
     program: Program,
     rules: Rules,
     per_file: Vec<PerFile>,
@@ -222,6 +227,103 @@ pub struct EventConfig {
     pub number: u16,
     /// `%I1.0`.
     pub trigger: Option<Channels>,
+}
+
+/// A section that runs under a condition.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SectionConfig {
+    address: Spanned<SectionAddress>,
+    condition: ConditionBit,
+}
+
+/// A section as headings name it: `MAST - Peinture`, `FAST - MAIN`.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+struct SectionAddress {
+    task: Task,
+    /// `None`: the one section of a task that has one.
+    name: Option<SmolStr>,
+}
+
+impl TryFrom<String> for SectionAddress {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        // PL7-2 has no sections.
+        let is_older = text.trim_start().get(..5).is_some_and(|it| it.eq_ignore_ascii_case("PL7-2"));
+        match entity_from_address(&text).filter(|_| !is_older) {
+            Some(Entity::Pl7 { task, section, part: Part::Main }) => Ok(Self { task, name: section }),
+            _ => Err(format!("`{text}` is no section, such as `MAST - Pump`, or `MAST - MAIN` where it has no name")),
+        }
+    }
+}
+
+impl SectionAddress {
+    /// Whether a unit belongs to the section. Subroutines belong to the task (PL7:1966).
+    fn holds(&self, entity: &Entity) -> bool {
+        let Entity::Pl7 { task, section, part } = entity else { return false };
+        let same = |a: &SmolStr, b: &SmolStr| a.to_lowercase() == b.to_lowercase();
+        let is_named = match (&self.name, section) {
+            (Some(a), Some(b)) => same(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        *task == self.task && is_named && !matches!(part, Part::Subroutine(_) | Part::Event)
+    }
+}
+
+/// What a section's condition is said to be: any object of PL7, for rule P001 tells which may be one.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+struct ConditionBit(Object);
+
+impl TryFrom<String> for ConditionBit {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let bare: String = text.split_whitespace().collect();
+        let parsed = match bare.split_once('[').and_then(|(base, rest)| Some((base, rest.rsplit_once(']')?))) {
+            Some((base, (index, suffix))) => {
+                object::pl7::parse(index).map_err(|it| format!("`{text}` is no object: {}", it.message))?;
+                object::pl7::parse_indexed(base, Some(suffix).filter(|it| !it.is_empty()))
+            }
+            None => object::pl7::parse(&bare),
+        };
+        match parsed {
+            Ok(object) => Ok(Self(Object { text: bare.into(), ..object })),
+            Err(error) => Err(format!("`{text}` is no object: {}", error.message)),
+        }
+    }
+}
+
+/// A module in the rack and the discrete channels that it has.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ModuleConfig {
+    /// As addresses name it: 2 of `%Q2.0`, 104 of `%Q104.0`.
+    position: Spanned<u32>,
+    #[serde(default)]
+    inputs: Channel,
+    #[serde(default)]
+    outputs: Channel,
+}
+
+/// A number of channels.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "u32")]
+struct Channel(u32);
+
+impl TryFrom<u32> for Channel {
+    type Error = String;
+
+    fn try_from(count: u32) -> Result<Self, String> {
+        let most = MODULE_CHANNELS;
+        if count > most.value {
+            return Err(format!("a module has {} channels at most ({}), not {count}", most.value, most.source));
+        }
+        Ok(Self(count))
+    }
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -384,6 +486,19 @@ impl Settings {
             options.insert(Spanned::new(word.span(), name.to_owned()), table);
         }
         file.rules.options = options;
+        for (at, section) in file.section.iter().enumerate() {
+            let address = section.address.get_ref();
+            if file.section[..at].iter().any(|it| it.address.get_ref() == address) {
+                return Err(text.error(Some(section.address.span()), "this section has a condition already"));
+            }
+        }
+        for (at, module) in file.module.iter().enumerate() {
+            let position = module.position.get_ref();
+            if file.module[..at].iter().any(|it| it.position.get_ref() == position) {
+                let message = format!("the module at position {position} is there already");
+                return Err(text.error(Some(module.position.span()), message));
+            }
+        }
         let mut entities = Vec::new();
         for (index, hint) in file.entity.iter().enumerate() {
             entities.push((text.glob(&hint.path)?, index));
@@ -519,6 +634,23 @@ impl Settings {
             }
         }
         fast_is_listed.then_some(Context::Cyclic)
+    }
+
+    /// The condition under which the section runs that a unit belongs to, as the configuration says.
+    pub fn condition_of(&self, entity: &Entity) -> Option<&Object> {
+        let section = self.0.file.section.iter().find(|it| it.address.get_ref().holds(entity))?;
+        Some(&section.condition.0)
+    }
+
+    /// Whether the configuration says which modules there are.
+    pub fn has_modules(&self) -> bool {
+        !self.0.file.module.is_empty()
+    }
+
+    /// Discrete output channels of the module at a position; `None` when none is configured there.
+    pub fn output_channels(&self, position: u32) -> Option<u32> {
+        let mut modules = self.0.file.module.iter();
+        Some(modules.find(|it| *it.position.get_ref() == position)?.outputs.0)
     }
 
     /// The input whose channel raises an event, as the configuration says.
@@ -769,6 +901,12 @@ mod tests {
             [[event]]
             number = 1
             trigger = "%I1.0"
+            [[section]]
+            address = "MAST - Pump"
+            condition = "%M5"
+            [[module]]
+            position = 4
+            outputs = 8
             [program]
             scope = "folder"
             [rules]
@@ -792,6 +930,15 @@ mod tests {
         assert_eq!(settings.tasks()[0].io[0].0.text, "%I3.8:8");
         assert_eq!(settings.tasks()[0].period, Some(Milliseconds(20)));
         assert_eq!(settings.events()[0].trigger.as_ref().map(|it| it.0.text.as_str()), Some("%I1.0"));
+        let condition =
+            |address| settings.condition_of(&entity_from_address(address).unwrap()).map(|it| it.text.as_str());
+        for address in ["MAST - PUMP", "MAST - Pump - PRL", "MAST - Pump - CHART - PAGE 0 %X1 P1"] {
+            assert_eq!(condition(address), Some("%M5"), "{address}");
+        }
+        for address in ["MAST - MAIN", "FAST - Pump", "MAST - SR1", "EVT1"] {
+            assert_eq!(condition(address), None, "{address}");
+        }
+        assert_eq!((settings.output_channels(4), settings.output_channels(5)), (Some(8), None));
         assert_eq!(settings.scope(), ProgramScope::Folder);
         assert_eq!(on(&settings, "a.st"), ["J005", "W001"]);
         assert_eq!(on(&settings, "../legacy/deep/a.st"), ["J005"]);
@@ -867,6 +1014,20 @@ mod tests {
         assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));
         assert!(error("[program]\nscope = 'galaxy'").contains("unknown variant"));
         assert!(error("[[event]]\nnumber = 1\ntrigger = '%M1'").starts_with("plclint.toml:3:11: `%M1` is no input"));
+        let section = |address: &str, condition: &str| {
+            error(&format!("[[section]]\naddress = '{address}'\ncondition = '{condition}'"))
+        };
+        for address in ["MAST - SR1", "MAST - Pump - PRL", "EVT1", "OB1", "PL7-2 MAST", "Pump", ""] {
+            assert!(section(address, "%M5").starts_with("plclint.toml:2:11: "), "{}", section(address, "%M5"));
+        }
+        for condition in ["Pump", "", "%M", "%M5[%MW1", "%M5[x]"] {
+            let message = section("MAST - Pump", condition);
+            assert!(message.starts_with("plclint.toml:3:13: ") && message.contains("is no object"), "{message}");
+        }
+        let twice = "[[section]]\naddress = 'MAST - A'\ncondition = '%M1'\n";
+        assert!(error(&format!("{twice}{twice}")).starts_with("plclint.toml:5:11: this section has a condition"));
+        assert!(error("[[module]]\nposition = 1\n[[module]]\nposition = 1").starts_with("plclint.toml:4:12: "));
+        assert!(error("[[module]]\nposition = 1\noutputs = 129").contains("128 channels"));
         assert!(error("[[task]]\nname = 'FAST'\nperiod = '20'").contains("`20` is no time in milliseconds"));
     }
 

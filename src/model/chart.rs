@@ -118,6 +118,8 @@ pub struct Step {
     /// Place of the name, else of the keyword.
     pub range: TextRange,
     pub anchor: u32,
+    /// Whether a comment stands in it.
+    pub commented: bool,
 }
 
 /// What stands before or behind a transition.

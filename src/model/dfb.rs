@@ -6,6 +6,7 @@ use smol_str::SmolStr;
 
 use super::object::Type;
 use super::symbols::key;
+use super::unit::Slot;
 
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Interface {
@@ -63,6 +64,11 @@ impl Role {
         }
     }
 
+    /// Whether the object that a call gives must be one that can be written (PL7:5660-5661).
+    pub fn is_written(self) -> bool {
+        matches!(self, Self::InOut | Self::Output)
+    }
+
     /// Whether a call gives the item an actual.
     pub fn is_parameter(self) -> bool {
         matches!(self, Self::Input | Self::InOut | Self::Output)
@@ -116,6 +122,39 @@ impl ItemType {
 
     pub fn is_bit(self) -> bool {
         matches!(self, Self::Bool | Self::Ebool)
+    }
+
+    /// The word of the type.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Bool => "BOOL",
+            Self::Ebool => "EBOOL",
+            Self::Word => "WORD",
+            Self::Double => "DWORD",
+            Self::Real => "REAL",
+            Self::Array(Element::Bit, _) => "AR_X",
+            Self::Array(Element::Word, _) => "AR_W",
+            Self::Array(Element::Double, _) => "AR_D",
+            Self::Array(Element::Real, _) => "AR_R",
+            Self::Text(_) => "STRING",
+            Self::Unknown => "another type",
+        }
+    }
+
+    /// Whether an object of that type may be the actual of a parameter (PL7:5589), whatever the lengths of tables. An
+    /// object or item of unknown type may.
+    pub fn takes(self, ty: Type) -> bool {
+        match (self, ty) {
+            // An address has no single bytes: those of a program are parts of strings.
+            (Self::Unknown, _) | (_, Type::Unknown | Type::Byte) => true,
+            (Self::Bool | Self::Ebool, Type::Bool) | (Self::Word, Type::Word) => true,
+            (Self::Double, Type::Double) | (Self::Real, Type::Float) | (Self::Text(_), Type::Text(_)) => true,
+            (Self::Array(Element::Bit, _), Type::BitTable(_)) => true,
+            (Self::Array(Element::Word, _), Type::WordTable(_)) => true,
+            (Self::Array(Element::Double, _), Type::DoubleTable(_)) => true,
+            (Self::Array(Element::Real, _), Type::FloatTable(_)) => true,
+            _ => false,
+        }
     }
 
     /// Whether the item is a table: the manual counts strings among them (PL7:5388-5391).
@@ -176,11 +215,71 @@ impl Interface {
         let of = |role| self.items.iter().filter(move |it| it.role == role);
         of(Role::Input).chain(of(Role::InOut)).chain(of(Role::Output))
     }
+
+    /// Index among [`Self::parameters`] of the one that an actual is for; `None` where the DFB has none.
+    ///
+    /// A block in a rung has its inputs on the left and its outputs on the right, one a row; its in/outs go through it
+    /// below both: therefore they count with the inputs as well as with the outputs (PL7:5415-5419).
+    pub fn position(&self, slot: Slot) -> Option<u32> {
+        let count = |role| u32::try_from(self.count(role)).unwrap_or(u32::MAX);
+        let (inputs, in_outs, outputs) = (count(Role::Input), count(Role::InOut), count(Role::Output));
+        let in_out = |row: u32| {
+            let row = row.checked_sub(inputs.max(outputs)).filter(|it| *it < in_outs)?;
+            Some(inputs + row)
+        };
+        match slot {
+            Slot::Position(at) => (at < inputs + in_outs + outputs).then_some(at),
+            Slot::Left(row) if row < inputs => Some(row),
+            Slot::Right(row) if row < outputs => Some(inputs + in_outs + row),
+            Slot::Left(row) | Slot::Right(row) => in_out(row),
+        }
+    }
+
+    /// The parameter that an actual is for.
+    pub fn parameter(&self, slot: Slot) -> Option<&Item> {
+        self.parameters().nth(self.position(slot)? as usize)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pins_of_a_block() {
+        let item = |name: &str, role| Item {
+            name: name.into(),
+            role,
+            ty: ItemType::Word,
+            initial: None,
+            anchor: 0,
+            ty_anchor: 0,
+        };
+        let items = vec![
+            item("q0", Role::Output),
+            item("i0", Role::Input),
+            item("x0", Role::InOut),
+            item("q1", Role::Output),
+            item("q2", Role::Output),
+            item("x1", Role::InOut),
+            item("p", Role::Public),
+        ];
+        let interface = Interface { anchor: 0, items };
+        let name = |slot| interface.parameter(slot).map(|it| it.name.as_str());
+        assert_eq!(
+            (0..7).map(|it| name(Slot::Left(it))).collect::<Vec<_>>(),
+            [Some("i0"), None, None, Some("x0"), Some("x1"), None, None]
+        );
+        assert_eq!(
+            (0..5).map(|it| name(Slot::Right(it))).collect::<Vec<_>>(),
+            [Some("q0"), Some("q1"), Some("q2"), Some("x0"), Some("x1")]
+        );
+        assert_eq!(
+            (name(Slot::Position(0)), name(Slot::Position(2)), name(Slot::Position(5))),
+            (Some("i0"), Some("x1"), Some("q2"))
+        );
+        assert_eq!(name(Slot::Position(6)), None);
+    }
 
     #[test]
     fn types() {

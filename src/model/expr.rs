@@ -237,8 +237,39 @@ impl Exprs {
         Some(Guard { nodes: ids.iter().map(node).collect() })
     }
 
+    /// Every read and edge that a condition is made of, each once.
+    fn each_leaf(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
+        let mut seen = FxHashSet::default();
+        let mut stack = vec![condition];
+        while let Some(id) = stack.pop() {
+            if seen.insert(id) {
+                self.get(id).operands(|it| stack.push(it));
+                if matches!(self.get(id), Expr::Read { .. } | Expr::Edge { .. }) {
+                    each(id);
+                }
+            }
+        }
+    }
+
+    /// Every object that a condition reads or tests for an edge.
+    pub fn each_object(&self, condition: ExprId, mut each: impl FnMut(ObjectId)) {
+        self.each_leaf(condition, |id| match self.get(id) {
+            Expr::Read { object, .. } | Expr::Edge { object, .. } => each(*object),
+            _ => {}
+        });
+    }
+
+    /// Every plain read that a condition is made of.
+    pub fn each_read(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
+        self.each_leaf(condition, |id| {
+            if matches!(self.get(id), Expr::Read { .. }) {
+                each(id);
+            }
+        });
+    }
+
     /// A condition of another unit, over objects as `object` names them here.
-    pub fn import(&mut self, guard: &Guard, object: impl Fn(ObjectId) -> ObjectId) -> ExprId {
+    pub fn import(&mut self, guard: &Guard, mut object: impl FnMut(ObjectId) -> ObjectId) -> ExprId {
         let mut ids: Vec<ExprId> = Vec::with_capacity(guard.nodes.len());
         for node in &guard.nodes {
             let at = |it: &ExprId| ids.get(it.0 as usize).copied().unwrap_or(Self::FALSE);

@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 
 use crate::syntax::pl7::ast::{Cell, Expr, Rung};
 use crate::syntax::pl7::ladder_words::Element;
-use crate::syntax::{AstNode as _, Language};
+use crate::syntax::{AstNode as _, Language, SyntaxKind};
 use crate::target::{pl7, pl72};
 
 /// Whose rungs.
@@ -167,6 +167,11 @@ impl Placed<'_> {
         self.cell.syntax().text_range()
     }
 
+    /// Whether a part of the cell was not understood.
+    pub fn is_broken(&self) -> bool {
+        self.cell.syntax().descendants().any(|it| it.kind() == SyntaxKind::Error)
+    }
+
     fn is_link(&self) -> bool {
         matches!(self.element, Some(Element::HLink | Element::ShortCircuit))
     }
@@ -177,6 +182,10 @@ impl Placed<'_> {
 
     fn is_block(&self) -> bool {
         self.element == Some(Element::Block)
+    }
+
+    fn is_actual(&self) -> bool {
+        self.element == Some(Element::Actual)
     }
 
     /// The column behind its last one, from 0.
@@ -198,6 +207,8 @@ pub enum Flaw {
     BlockNotFed,
     /// What the element lets through goes nowhere.
     LeadsNowhere,
+    /// What a pin of a DFB is given, in a cell beside which there is none.
+    FacesNoPin,
     /// A vertical link that ends at nothing.
     OpenLink,
     /// A wire goes round the element.
@@ -239,6 +250,9 @@ pub struct Row<'t> {
 struct Junction {
     left: Vec<u32>,
     right: Vec<u32>,
+    /// Through what a pin is given nothing flows: it is on neither side.
+    input_actual: Option<u32>,
+    output_actual: Option<u32>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -377,9 +391,12 @@ impl<'t> Grid<'t> {
         if points > 0 {
             wires.of_root[sets.find(0)] = Some(Wire::RAIL);
         }
+        // Pins of DFBs, by row and edge: those of inputs, those of outputs.
+        let mut pins = [const { Vec::new() }; 2];
         for index in 0..self.placed.len() {
             let (row, column) = (self.placed[index].row as usize, self.placed[index].column as usize);
             let width = self.placed[index].width as usize;
+            let is_dfb = self.is_dfb(&self.placed[index]);
             let mut inputs = Vec::new();
             let mut outputs = Vec::new();
             for line in 0..self.lines(index) {
@@ -393,12 +410,28 @@ impl<'t> Grid<'t> {
                 if !self.placed[index].is_action() {
                     outputs.push(wires.name(sets.find(start + column + width)));
                 }
+                if is_dfb {
+                    pins[0].push((row, column));
+                    pins[1].push((row, column + width));
+                }
             }
             self.placed[index].inputs = inputs;
             self.placed[index].outputs = outputs;
         }
+        // What a pin is given lies at its wire alone.
+        let pins = pins.map(|it| it.into_iter().collect::<rustc_hash::FxHashSet<(usize, usize)>>());
+        for it in self.placed.iter_mut().filter(|it| it.is_actual()) {
+            let (row, column) = (it.row as usize, it.column as usize);
+            it.outputs.retain(|_| pins[0].contains(&(row, column + 1)));
+            it.inputs.retain(|_| pins[1].contains(&(row, column)));
+        }
         self.wires = vec![Junction::default(); wires.count as usize];
         for (index, it) in (0..).zip(&self.placed) {
+            if it.is_actual() {
+                it.outputs.iter().for_each(|wire| self.wires[wire.0 as usize].input_actual = Some(index));
+                it.inputs.iter().for_each(|wire| self.wires[wire.0 as usize].output_actual = Some(index));
+                continue;
+            }
             for wire in &it.inputs {
                 self.wires[wire.0 as usize].right.push(index);
             }
@@ -444,6 +477,36 @@ impl<'t> Grid<'t> {
     /// Whether some element stands at the right of a wire.
     pub fn is_used(&self, wire: Wire) -> bool {
         !self.wires[wire.0 as usize].right.is_empty()
+    }
+
+    /// What the input of a DFB at the right end of a wire is given.
+    pub fn input_actual(&self, wire: Wire) -> Option<&Placed<'t>> {
+        self.placed.get(self.wires[wire.0 as usize].input_actual? as usize)
+    }
+
+    /// What the output of a DFB at the left end of a wire is given.
+    pub fn output_actual(&self, wire: Wire) -> Option<&Placed<'t>> {
+        self.placed.get(self.wires[wire.0 as usize].output_actual? as usize)
+    }
+
+    fn left_of(&self, wire: Wire) -> impl Iterator<Item = &Placed<'t>> {
+        self.wires[wire.0 as usize].left.iter().map(|&it| &self.placed[it as usize])
+    }
+
+    /// The DFB whose output leads to an input of another one with less than the columns between them that there must be.
+    pub fn too_close(&self, block: &Placed<'t>) -> Option<&Placed<'t>> {
+        if self.is_beyond_reason() {
+            return None;
+        }
+        let is_before = |it: &&Placed<'t>| self.is_dfb(it) && it.end() + pl7::DFB_GAP.value > block.column;
+        block.inputs.iter().filter(|it| **it != Wire::RAIL).find_map(|&wire| {
+            let beside = self.left_of(wire).find(is_before);
+            // Less than two columns: there is room for one element.
+            beside.or_else(|| {
+                let inner = self.left_of(wire).filter(|it| !it.is_block());
+                inner.flat_map(|it| &it.inputs).find_map(|&wire| self.left_of(wire).find(is_before))
+            })
+        })
     }
 
     /// The connected networks, the topmost first, of the same row the leftmost first; in each, the elements in the order
@@ -508,6 +571,12 @@ impl<'t> Grid<'t> {
                     flaws.push((Flaw::ActionInTestZone(it.end()), it.range(), None));
                 }
             }
+            if it.is_actual() {
+                if it.inputs.is_empty() && it.outputs.is_empty() && !it.is_broken() {
+                    flaws.push((Flaw::FacesNoPin, it.range(), None));
+                }
+                continue;
+            }
             if !it.inputs.iter().any(|wire| self.is_fed(*wire)) {
                 let is_box = matches!(element, Element::Block | Element::Operate);
                 flaws.push((if is_box { Flaw::BlockNotFed } else { Flaw::NotFed }, it.range(), None));
@@ -530,8 +599,7 @@ impl<'t> Grid<'t> {
 
     /// Tests that a plain wire goes round: whenever power comes to where the branch starts, the wire has it at its end.
     fn bypassed(&self, flaws: &mut Vec<(Flaw, TextRange, Option<TextRange>)>) {
-        // Beyond all controllers' limits the rung is wrong anyway.
-        if self.placed.len() > 2 * (self.layout.most_lines() * self.layout.most_cells()) as usize {
+        if self.is_beyond_reason() {
             return;
         }
         for (index, wire) in self.wires.iter().enumerate().skip(1) {
@@ -578,6 +646,16 @@ impl<'t> Grid<'t> {
                 }
             }
         }
+    }
+
+    /// Whether it is a block whose pins are not those of a standard block: that of a DFB, which PL7-2 does not have.
+    fn is_dfb(&self, it: &Placed<'_>) -> bool {
+        self.layout == Layout::Pl7 && it.is_block() && self.layout.block_of(it.cell).is_none()
+    }
+
+    /// Beyond all controllers' limits the rung is wrong anyway.
+    fn is_beyond_reason(&self) -> bool {
+        self.placed.len() > 2 * (self.layout.most_lines() * self.layout.most_cells()) as usize
     }
 
     fn links_left_of(&self, wire: usize) -> impl Iterator<Item = &Placed<'t>> {

@@ -11,6 +11,8 @@ pub mod literal;
 pub mod lower;
 pub mod object;
 pub mod pl7_kinds;
+pub mod pl7_precedence;
+pub mod pl7_tables;
 pub mod symbols;
 pub mod unit;
 pub mod work;

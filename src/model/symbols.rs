@@ -34,23 +34,30 @@ pub struct Remark {
     pub range: TextRange,
 }
 
+impl Remark {
+    /// Measures a comment, of which `text` is all with its delimiters.
+    pub fn new(kind: RemarkKind, text: &str, range: TextRange) -> Self {
+        let characters = u32::try_from(Self::inner(text).chars().count()).unwrap_or(u32::MAX);
+        Self { kind, characters, range }
+    }
+
+    /// What stands between the delimiters of a comment, or of a value in quotes, without the blanks around it.
+    pub fn inner(text: &str) -> &str {
+        let inner = ["(*", "'"].iter().find_map(|it| text.strip_prefix(it)).unwrap_or(text);
+        ["*)", "'"].iter().find_map(|it| inner.strip_suffix(it)).unwrap_or(inner).trim()
+    }
+}
+
 /// What a comment belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RemarkKind {
     Symbol,
     /// A section or subroutine, in the header of its source unit.
     Module,
+    /// A parameter or variable of a DFB.
+    Item,
     /// A network of PL7-2.
     Network,
-}
-
-impl Remark {
-    /// The remark that a comment with its delimiters is.
-    pub fn new(kind: RemarkKind, text: &str, range: TextRange) -> Self {
-        let inner = text.strip_prefix("(*").unwrap_or(text);
-        let inner = inner.strip_suffix("*)").unwrap_or(inner).trim();
-        Self { kind, characters: u32::try_from(inner.chars().count()).unwrap_or(u32::MAX), range }
-    }
 }
 
 /// What makes two spellings the same symbol.

@@ -16,6 +16,7 @@ use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
+use super::pl7_kinds::Kind;
 use super::symbols::{Remark, Symbol};
 use super::work::Network;
 use crate::syntax::Language;
@@ -155,6 +156,24 @@ pub struct Access {
     pub parameter: Option<Formal>,
 }
 
+/// How a call says which parameter an actual is for.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Formal {
+    Name(SmolStr),
+    Slot(Slot),
+}
+
+/// Where an actual of a DFB stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Slot {
+    /// Place among the parameters of a call in text, from 0: positions may be left open.
+    Position(u32),
+    /// Row on the left of a block in a rung, from 0.
+    Left(u32),
+    /// Row on its right.
+    Right(u32),
+}
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StatementKind {
     /// `access` indexes [`UnitModel::accesses`]; `value` is what the bit takes, negation applied.
@@ -270,14 +289,6 @@ pub enum Callee {
     Unknown,
 }
 
-/// A formal parameter, as a call says which it is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Formal {
-    Name(SmolStr),
-    /// Place among the parameters, from 0.
-    Position(u32),
-}
-
 /// A parameter of a call with what was given for it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Argument {
@@ -285,8 +296,27 @@ pub struct Argument {
     pub name: Option<SmolStr>,
     pub object: Option<ObjectId>,
     pub range: TextRange,
-    /// Place among the parameters, from 0: positions may be left open.
-    pub position: u32,
+}
+
+/// What a call gives to a parameter of a DFB. It holds no position, so that it may leave the unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Actual {
+    pub slot: Slot,
+    pub anchor: u32,
+    pub given: Given,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Given {
+    Object(ObjectId),
+    /// A constant, of a kind.
+    Constant(Kind),
+    /// The value of an expression.
+    Expression(Kind),
+    /// A wire of a rung.
+    Wire,
+    /// An operand with a mistake.
+    Unknown,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -302,9 +332,15 @@ pub struct Call {
     /// Instance data block, as written.
     pub instance: Option<BlockName>,
     pub instance_range: Option<TextRange>,
+    /// Of STEP 7.
     pub arguments: Vec<Argument>,
-    /// Whether the instruction can pass parameters and an instance (`CALL`, not `UC`/`CC`), and `arguments` has them all.
+    /// Of an instance of a DFB.
+    pub actuals: Vec<Actual>,
+    /// Whether the instruction can pass parameters and an instance (`CALL`, not `UC`/`CC`), and all that it passes is known.
     pub full: bool,
+    /// Of a DFB in a rung: the call of the DFB before it in series, with less room between them than there must be
+    /// (PL7:5625).
+    pub too_close: Option<u32>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

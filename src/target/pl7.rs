@@ -143,6 +143,10 @@ pub const DFB_OUTPUTS_AND_IN_OUTS: Limit = Limit::new(15, "PL7:5419");
 pub const DFB_PUBLIC_VARIABLES: Limit = Limit::new(100, "PL7:5435");
 pub const DFB_PRIVATE_VARIABLES: Limit = Limit::new(100, "PL7:5436");
 /// Boolean inputs, at least.
+/// Channels of one module: 0 to 127.
+pub const MODULE_CHANNELS: Limit = Limit::new(128, "PL7:755");
+/// Columns between two DFBs in series.
+pub const DFB_GAP: Limit = Limit::new(2, "PL7:5625");
 pub const DFB_BOOLEAN_INPUTS: Limit = Limit::new(1, "PL7:5423");
 
 /// What has a number and is counted. Numbers start at 0, and how many there are is set when the application is

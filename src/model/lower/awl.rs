@@ -910,8 +910,7 @@ impl Machine {
                     None
                 }
             };
-            let position = index(arguments.len());
-            arguments.push(Argument { name, object, range, position });
+            arguments.push(Argument { name, object, range });
         }
         let anchor = self.b.anchor(callee_node.range());
         if let Some(node) = &instance_node {
@@ -927,7 +926,9 @@ impl Machine {
             instance,
             instance_range: instance_node.map(ast::Operand::range),
             arguments,
+            actuals: Vec::new(),
             full: op == Op::Call,
+            too_close: None,
         };
         let answers: Vec<ObjectId> = call
             .arguments

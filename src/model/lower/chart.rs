@@ -75,6 +75,7 @@ pub(super) fn enter_piece(pl7: &mut Pl7) {
                 cell: None,
                 range: heading,
                 anchor: 0,
+                commented: false,
             });
             chart.actions.push(Action {
                 steps: vec![0],
@@ -256,7 +257,8 @@ impl<'t> Lowering<'t> {
         let anchor = self.anchor(range);
         let at = index(self.chart.steps.len());
         let cell = it.cell().and_then(|it| cell(it, page));
-        self.chart.steps.push(Step { name, text: text.into(), kind, cell, range, anchor });
+        let commented = node.descendant_tokens().any(|it| it.kind() == SyntaxKind::Comment);
+        self.chart.steps.push(Step { name, text: text.into(), kind, cell, range, anchor, commented });
         for action in it.actions() {
             self.action(action, Some(at));
         }

@@ -8,7 +8,7 @@ use super::pl7::Pl7;
 use crate::model::dfb::{Interface, Item, ItemType, Role};
 use crate::model::entity::Entity;
 use crate::model::object::{Area, Class, Footprint, Object, Rights, Type};
-use crate::model::symbols::key;
+use crate::model::symbols::{Remark, RemarkKind, key};
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
 /// The items of the interface by their key.
@@ -26,6 +26,7 @@ pub(super) fn enter(pl7: &mut Pl7, root: SyntaxNode<'_>) {
         for it in section.children().filter(|it| it.kind() == SyntaxKind::VarDecl) {
             declaration(&mut pl7.b, &mut interface, role, it);
         }
+        remarks(&mut pl7.b, section);
     }
     let heading = root.children().find(|it| it.kind() == SyntaxKind::Heading);
     let name = heading.and_then(|it| it.tokens().filter(|it| it.kind() == SyntaxKind::Ident).nth(1));
@@ -56,6 +57,28 @@ fn declaration(b: &mut Builder, interface: &mut Interface, role: Role, node: Syn
             anchor,
             ty_anchor: ty_anchor.unwrap_or(anchor),
         });
+    }
+}
+
+/// Comments of the items: in a declaration, or behind it on its line.
+fn remarks(b: &mut Builder, section: SyntaxNode<'_>) {
+    let mut declarations = section.children().filter(|it| it.kind() == SyntaxKind::VarDecl).map(|it| it.text_range());
+    let mut next = declarations.next();
+    let mut is_behind = false;
+    for token in section.descendant_tokens() {
+        let range = token.text_range();
+        while next.is_some_and(|it| it.end() <= range.start()) {
+            next = declarations.next();
+        }
+        let is_inside = next.is_some_and(|it| it.contains_range(range));
+        match token.kind() {
+            SyntaxKind::Newline => is_behind = false,
+            SyntaxKind::Comment if is_inside || is_behind => {
+                b.model.remarks.push(Remark::new(RemarkKind::Item, token.text(), range));
+            }
+            kind if !kind.is_trivia() => is_behind = is_inside,
+            _ => {}
+        }
     }
 }
 

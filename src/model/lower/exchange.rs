@@ -92,12 +92,11 @@ impl Lowering<'_> {
     /// Notes a comment with its delimiters. Returns the range of its text.
     fn remark(&mut self, kind: RemarkKind, range: TextRange) -> TextRange {
         let whole = self.slice(range);
-        let inner = ["(*", "'"].iter().find_map(|it| whole.strip_prefix(it)).unwrap_or(whole).trim_start();
-        let offset = TextSize::of(whole) - TextSize::of(inner);
-        let trimmed = ["*)", "'"].iter().find_map(|it| inner.strip_suffix(it)).unwrap_or(inner).trim_end();
-        let text = TextRange::at(range.start() + offset, TextSize::of(trimmed));
-        let characters = u32::try_from(trimmed.chars().count()).unwrap_or(u32::MAX);
-        self.b.model.remarks.push(Remark { kind, characters, range });
+        let inner = Remark::inner(whole);
+        let offset = whole.find(inner).and_then(|it| TextSize::try_from(it).ok()).unwrap_or_default();
+        let text = TextRange::at(range.start() + offset, TextSize::of(inner));
+        let remark = Remark::new(kind, whole, range);
+        self.b.model.remarks.push(remark);
         text
     }
 }

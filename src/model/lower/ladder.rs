@@ -20,7 +20,7 @@ use crate::model::expr::{self, ExprId, Exprs, ObjectId};
 use crate::model::ladder::{BlockShape, Flaw, Grid, Layout, Placed, Wire};
 use crate::model::object::{self, Class, Object};
 use crate::model::symbols::{Remark, RemarkKind};
-use crate::model::unit::{Call, Callee, Leave, Mode, OddityKind, Pin, StatementKind};
+use crate::model::unit::{Actual, Given, Leave, Mode, OddityKind, Pin, Slot, StatementKind};
 use crate::model::work::{CodeKind, Network};
 use crate::syntax::pl7::ast::{self, Expr, Stmt};
 use crate::syntax::pl7::ladder_words::Element;
@@ -89,6 +89,10 @@ struct Run {
     power: Vec<ExprId>,
     /// Conditions of contacts and comparisons, by element.
     tests: FxHashMap<usize, ExprId>,
+    /// Calls of DFBs, by the place of the block.
+    instances: FxHashMap<TextRange, u32>,
+    /// Whether all of the rung was understood, once that was asked.
+    is_read: Option<bool>,
 }
 
 /// A bit that a connected network of a rung uses.
@@ -130,7 +134,8 @@ impl Lowering {
         let networks = grid.networks();
         let mut contacts = Vec::new();
         let mut coils = Vec::new();
-        let mut run = Run { power: vec![Exprs::FALSE; grid.wire_count()], tests: FxHashMap::default() };
+        let power = vec![Exprs::FALSE; grid.wire_count()];
+        let mut run = Run { power, tests: FxHashMap::default(), instances: FxHashMap::default(), is_read: None };
         run.power[Grid::index(Wire::RAIL)] = Exprs::TRUE;
         for (number, elements) in networks.iter().enumerate() {
             self.network(&grid, elements, number, &mut run, &mut contacts, &mut coils);
@@ -295,6 +300,7 @@ impl Lowering {
         let before = run.at(it);
         let through = match it.element {
             Some(Element::HLink | Element::ShortCircuit) => before,
+            Some(Element::Actual) => return,
             Some(Element::Block) => return self.block(grid, it, run),
             Some(Element::Operate) => return self.operate(it, before),
             Some(Element::Call) => {
@@ -352,7 +358,7 @@ impl Lowering {
                     let data = self.pl7.b.model.object(object);
                     if data.class == Class::Symbol {
                         let name = data.text.clone();
-                        self.instance(&name, at, it.range());
+                        self.instance(grid, it, &name, at, run);
                     } else if data.class != Class::Indirect {
                         let text = operand.syntax().text();
                         self.operand_type(format!("`{text}` is no function block"), &operand);
@@ -398,23 +404,34 @@ impl Lowering {
         self.pl7.read(output, at)
     }
 
-    /// A block under a symbol: an instance of a DFB, as far as it shows.
-    fn instance(&mut self, name: &str, at: TextRange, range: TextRange) {
-        let anchor = self.pl7.b.anchor(at);
-        let call = Call {
-            callee: Callee::Instance(name.to_lowercase().into()),
-            text: name.into(),
-            statement: 0,
-            anchor,
-            when: Exprs::TRUE,
-            instance: None,
-            instance_range: None,
-            arguments: Vec::new(),
-            // What its pins are given is not read.
-            full: false,
-        };
-        self.pl7.b.call(call, range);
-        self.pl7.b.wipe();
+    /// A block under a symbol: an instance of a DFB, as far as it shows. It is called in each scan of the rung.
+    fn instance(&mut self, grid: &Grid<'_>, it: &Placed<'_>, name: &str, at: TextRange, run: &mut Run) {
+        let mut actuals = Vec::new();
+        let is_read =
+            *run.is_read.get_or_insert_with(|| grid.placed.iter().all(|it| it.element.is_some() && !it.is_broken()));
+        let wired = if is_read { Given::Wire } else { Given::Unknown };
+        for (row, &wire) in (0..).zip(&it.inputs) {
+            if let Some(operand) = grid.input_actual(wire).and_then(|it| it.cell.operand()) {
+                actuals.push(self.pl7.actual(Slot::Left(row), &operand));
+            } else if grid.is_fed(wire) && (row == 0 || wire != Wire::RAIL) {
+                // A block beside the rail hangs on it by its first row alone.
+                let anchor = self.pl7.b.anchor(at);
+                actuals.push(Actual { slot: Slot::Left(row), anchor, given: wired });
+            }
+        }
+        for (row, &wire) in (0..).zip(&it.outputs) {
+            if let Some(operand) = grid.output_actual(wire).and_then(|it| it.cell.operand()) {
+                actuals.push(self.pl7.actual(Slot::Right(row), &operand));
+            } else if grid.is_used(wire) {
+                let anchor = self.pl7.b.anchor(at);
+                actuals.push(Actual { slot: Slot::Right(row), anchor, given: wired });
+            }
+        }
+        let call = self.pl7.instance(name, at, it.range(), actuals, is_read);
+        run.instances.insert(it.range(), call);
+        if let Some(&before) = grid.too_close(it).and_then(|it| run.instances.get(&it.range())) {
+            self.pl7.b.model.calls[call as usize].too_close = Some(before);
+        }
     }
 
     /// An operation block: done when it has power.
@@ -668,6 +685,65 @@ mod tests {
             ["start of %TM1 when %M0", "start of %TM2 when %TM1.Q", "%M5 := %TM2.Q"]
         );
         assert_eq!(statements("H_LINK,BLOCK(Pump),EMPTY_CELL(7);"), ["call Pump when true"]);
+    }
+
+    #[test]
+    fn blocks_of_dfbs() {
+        let model = model(
+            "OPEN_CONTACT(%M0),H_LINK,BLOCK(Vis),H_LINK(5),COIL(%Q2.0);\n\
+             EMPTY_CELL,EFFECTIVE_PARAMETER(%MW10+1),EMPTY_CELL(3),EFFECTIVE_PARAMETER(%MW20),EMPTY_CELL(5);\n\
+             EMPTY_CELL,EFFECTIVE_PARAMETER(%MW30),EMPTY_CELL(9);",
+        );
+        let call = &model.calls[0];
+        let shown: Vec<String> = call
+            .actuals
+            .iter()
+            .map(|it| match it.given {
+                Given::Object(object) => format!("{:?} {}", it.slot, model.object(object).text),
+                other => format!("{:?} {other:?}", it.slot),
+            })
+            .collect();
+        assert_eq!(
+            shown,
+            ["Left(0) Wire", "Left(1) Expression(Integer)", "Left(2) %MW30", "Right(0) Wire", "Right(1) %MW20"]
+        );
+        assert!(call.full && call.too_close.is_none());
+        let modes: Vec<(Mode, &str)> =
+            model.accesses.iter().map(|it| (it.mode, model.object(it.object).text.as_str())).collect();
+        assert_eq!(modes[1..4], [(Mode::Read, "%MW10"), (Mode::InOut, "%MW30"), (Mode::Output, "%MW20")]);
+        assert_eq!(flaws(&model), []);
+    }
+
+    #[test]
+    fn what_a_block_beside_the_rail_is_given() {
+        let slots = |rows| model(rows).calls[0].actuals.iter().map(|it| it.slot).collect::<Vec<_>>();
+        assert_eq!(slots("BLOCK(Vis),EMPTY_CELL(8);\nEMPTY_CELL(11);"), [Slot::Left(0)]);
+        let flawed =
+            model("EMPTY_CELL,BLOCK(Vis),EMPTY_CELL(7);\nEMPTY_CELL(5),EFFECTIVE_PARAMETER(%MW1),EMPTY_CELL(5);");
+        assert_eq!(flaws(&flawed), [Flaw::BlockNotFed, Flaw::FacesNoPin]);
+    }
+
+    #[test]
+    fn dfbs_in_series() {
+        let close = |rows| model(rows).calls.iter().map(|it| it.too_close).collect::<Vec<_>>();
+        assert_eq!(close("OPEN_CONTACT(%M0),BLOCK(A),H_LINK,BLOCK(B),H_LINK(2),COIL(%M1);"), [None, Some(0)]);
+        assert_eq!(close("OPEN_CONTACT(%M0),BLOCK(A),H_LINK(2),BLOCK(B),H_LINK,COIL(%M1);"), [None, None]);
+        // A branch from the line below, around a corner.
+        let branch =
+            "OPEN_CONTACT(%M0),BLOCK(A),EMPTY_CELL,BLOCK(B),H_LINK(2),COIL(%M1);\nEMPTY_CELL(4),EMPTY_CELL(7);";
+        assert_eq!(close(branch), [None, None], "no wire joins them");
+    }
+
+    #[test]
+    fn a_call_in_a_rung_that_is_not_understood_is_not_whole() {
+        let text = "RUNG\nOPEN_CONTACT(%M0),BLOCK(Vis),H_LINK(6),COIL(%M1);\nPIN(%MW10),EMPTY_CELL(10);\nEND_RUNG";
+        let parse = crate::syntax::pl7::parse_ld(text);
+        let errors: Vec<_> = parse.errors().iter().map(|it| it.message.to_string()).collect();
+        assert_eq!(errors, ["`PIN` is no element of a rung"]);
+        let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let model = lower(parse.syntax(), text, entity);
+        assert!(!model.calls[0].full && model.calls[0].actuals.iter().all(|it| it.given == Given::Unknown));
+        assert_eq!(model.statements.len(), 2, "the coil is driven all the same");
     }
 
     #[test]

@@ -10,8 +10,10 @@ use crate::model::entity::Entity;
 use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
+use crate::model::pl7_kinds;
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Formal, Index, IndexKind, Leave, Mode, OddityKind, Pin, StatementKind,
+    Actual, Call, Callee, Constant, DeadCause, Formal, Given, Index, IndexKind, Leave, Mode, OddityKind, Pin, Slot,
+    StatementKind,
 };
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
 use crate::syntax::pl7::functions::{self, Function};
@@ -482,41 +484,82 @@ impl Pl7 {
             return;
         }
         let function = it.function();
-        let mut arguments = Vec::new();
-        for (position, argument) in it.arguments().into_iter().enumerate() {
-            let Some(argument) = argument else { continue };
-            let at = argument.syntax().text_range();
-            let (object, ..) = self.argument(&argument, function, position);
-            // The index of an object is read before the object itself is accessed.
-            if object.is_some()
-                && function.is_none()
-                && let Some(access) = self.b.model.accesses.last_mut().filter(|it| it.mode == Mode::InOut)
-            {
-                access.parameter = Some(Formal::Position(index(position)));
-            }
-            arguments.push(Argument { name: None, object, range: at, position: index(position) });
+        let arguments = (0..).zip(it.arguments()).filter_map(|it| Some((it.0, it.1?)));
+        if function.is_none() {
+            let actuals = arguments.map(|(at, it)| self.actual(Slot::Position(at), &it)).collect();
+            self.instance(callee.text(), callee.text_range(), range, actuals, true);
+            return;
         }
-        let callee_kind = match function {
-            Some(_) => Callee::Function(name),
-            None => Callee::Instance(callee.text().to_lowercase().into()),
-        };
-        let anchor = self.b.anchor(callee.text_range());
-        let call = Call {
-            callee: callee_kind,
-            text: callee.text().into(),
+        for (position, argument) in arguments {
+            self.argument(&argument, function, position as usize);
+        }
+        let call = Call { full: true, ..self.new_call(Callee::Function(name), callee.text(), callee.text_range()) };
+        self.b.call(call, range);
+    }
+
+    fn new_call(&mut self, callee: Callee, text: &str, at: TextRange) -> Call {
+        Call {
+            callee,
+            text: text.into(),
             statement: 0,
-            anchor,
+            anchor: self.b.anchor(at),
             when: Exprs::TRUE,
             instance: None,
             instance_range: None,
-            arguments,
-            full: true,
+            arguments: Vec::new(),
+            actuals: Vec::new(),
+            full: false,
+            too_close: None,
+        }
+    }
+
+    /// What is given to a parameter of a DFB. Of one on the left of a block, or in a call in text, the parameter is not
+    /// known here, nor what becomes of it.
+    pub(super) fn actual(&mut self, slot: Slot, argument: &Expr) -> Actual {
+        let range = argument.syntax().text_range();
+        let formal = Some(Formal::Slot(slot));
+        let given = match (slot, self.place(argument)) {
+            (_, Some((object, _))) if self.b.model.object(object).class == Class::Indirect => Given::Unknown,
+            (_, Some((object, at))) => {
+                let is_read_only = matches!(self.b.model.object(object).rights, Rights::ReadOnly(_));
+                let mode = match slot {
+                    _ if is_read_only => Mode::Read,
+                    Slot::Right(_) => Mode::Output,
+                    Slot::Left(_) | Slot::Position(_) => Mode::InOut,
+                };
+                let access = self.b.touch(object, mode, at);
+                self.b.model.accesses[access as usize].parameter = formal;
+                Given::Object(object)
+            }
+            (_, None) => {
+                let kind = match self.expr(argument).1 {
+                    _ if is_text(argument) => pl7_kinds::Kind::Text,
+                    Kind::Bit => pl7_kinds::Kind::Bit,
+                    Kind::Number => pl7_kinds::Kind::Integer,
+                    Kind::Float => pl7_kinds::Kind::Float,
+                    Kind::Unknown => pl7_kinds::Kind::Unknown,
+                };
+                if is_constant(argument) { Given::Constant(kind) } else { Given::Expression(kind) }
+            }
         };
+        Actual { slot, anchor: self.b.anchor(range), given }
+    }
+
+    /// The call of an instance of a DFB. `full`: all that it is given is known.
+    pub(super) fn instance(
+        &mut self,
+        name: &str,
+        at: TextRange,
+        range: TextRange,
+        actuals: Vec<Actual>,
+        full: bool,
+    ) -> u32 {
+        let callee = Callee::Instance(name.to_lowercase().into());
+        let call = Call { actuals, full, ..self.new_call(callee, name, at) };
         self.b.call(call, range);
         // An instance has run: its outputs and public variables, which are names here, may have other values.
-        if function.is_none() {
-            self.b.wipe();
-        }
+        self.b.wipe();
+        index(self.b.model.calls.len() - 1)
     }
 
     /// `START %TM1;`, `DOWN %TM1;`, `PRESET %C8;`, `UP %C8;`: a statement that drives a block.
@@ -534,18 +577,7 @@ impl Pl7 {
     }
 
     pub(super) fn subroutine(&mut self, number: u32, text: &str, when: ExprId, at: TextRange, range: TextRange) {
-        let anchor = self.b.anchor(at);
-        let call = Call {
-            callee: Callee::Subroutine(number),
-            text: text.into(),
-            statement: 0,
-            anchor,
-            when,
-            instance: None,
-            instance_range: None,
-            arguments: Vec::new(),
-            full: false,
-        };
+        let call = Call { when, ..self.new_call(Callee::Subroutine(number), text, at) };
         self.b.call(call, range);
         self.b.wipe_by_call();
     }
@@ -577,6 +609,22 @@ impl Pl7 {
         self.b.mark_all_exits();
         self.b.leave(when, DeadCause::Halt, range);
     }
+}
+
+/// Whether an expression is a constant, with or without a sign.
+fn is_constant(expr: &Expr<'_>) -> bool {
+    match expr {
+        Expr::Literal(_) => true,
+        Expr::Unary(it) => {
+            let sign = matches!(it.op(), Some(UnaryOp::Minus | UnaryOp::Plus));
+            sign && matches!(it.operand(), Some(Expr::Literal(_)))
+        }
+        _ => false,
+    }
+}
+
+fn is_text(expr: &Expr<'_>) -> bool {
+    matches!(expr, Expr::Literal(it) if it.token().is_some_and(|it| it.kind() == SyntaxKind::CharString))
 }
 
 /// The pin that the name of an input means, by the letters of the block's address.

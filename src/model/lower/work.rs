@@ -58,7 +58,7 @@ impl Elements {
             Some(Word::Block) => self.add(block(cell)),
             // The tables have no row for the coil of a receptivity, which is no action.
             Some(Word::HLink | Word::EmptyCell | Word::EmptyLine | Word::HashCoil) => {}
-            Some(Word::Call | Word::Return | Word::Halt) | None => self.unlisted += 1,
+            Some(Word::Call | Word::Return | Word::Halt | Word::Actual) | None => self.unlisted += 1,
         }
     }
 }

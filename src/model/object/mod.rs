@@ -109,6 +109,11 @@ impl Type {
         })
     }
 
+    /// A floating-point number, or a table of them.
+    pub fn is_float(self) -> bool {
+        matches!(self, Self::Float | Self::FloatTable(_))
+    }
+
     pub fn is_table(self) -> bool {
         matches!(
             self,

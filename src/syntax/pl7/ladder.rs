@@ -204,6 +204,7 @@ impl Grammar<'_, '_> {
                 Some(Number) => self.operand().is_some(),
                 _ => false,
             },
+            Shape::Expression => self.expr().is_some(),
             Shape::Bare | Shape::Comparison | Shape::Operation => true,
         };
         if !is_read {
@@ -211,6 +212,7 @@ impl Grammar<'_, '_> {
                 Shape::Count => "a number of cells",
                 Shape::Label => "a label",
                 Shape::Subroutine => "a subroutine",
+                Shape::Expression => "an object or expression",
                 _ => "an object",
             });
         }

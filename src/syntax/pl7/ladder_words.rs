@@ -1,8 +1,12 @@
 //! The words of rungs in the exchange form. The one table of them, with every spelling that is read.
 //!
 //! The form is not published. What is *seen* stands in real exchange files; what is *assumed* takes the names that the
-//! successor's XML form gives to the same elements (`closedContact`, `setCoil`, `compareBlock`), written as the seen words
-//! are. Where a real file disagrees, one line here changes.
+//! successor's XML form gives to the same elements (`closedContact`, `setCoil`, `compareBlock`, `effectiveParameter`),
+//! written as the seen words are. Where a real file disagrees, one line here changes.
+//!
+//! Of a DFB the manual says that what its pins are given stands in the cells that face them (PL7:5623, 5646). Assumed: the
+//! block is `BLOCK(Instance)` of three columns, its first pin in its first row, and such a cell is
+//! `EFFECTIVE_PARAMETER(%MW10)`, left of the block for inputs and in/outs, right of it for outputs.
 
 /// What stands in the parentheses behind a word, or up to the `END_BLOCK` of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -21,6 +25,8 @@ pub enum Shape {
     Comparison,
     /// Assignments and calls up to `END_BLOCK`.
     Operation,
+    /// An object or expression.
+    Expression,
 }
 
 /// An element of a rung (PL7:2700-2767).
@@ -56,6 +62,8 @@ pub enum Element {
     Compare,
     Operate,
     Block,
+    /// What a pin of a DFB is given, in the cell that faces it (PL7:5623, 5646).
+    Actual,
 }
 
 impl Element {
@@ -70,6 +78,7 @@ impl Element {
             Self::Call => Shape::Subroutine,
             Self::Compare => Shape::Comparison,
             Self::Operate => Shape::Operation,
+            Self::Actual => Shape::Expression,
         }
     }
 
@@ -154,6 +163,7 @@ const WORDS: &[Word] = &[
     assumed("COMPARE", Element::Compare),
     seen("OPERATE", Element::Operate),
     seen("BLOCK", Element::Block),
+    assumed("EFFECTIVE_PARAMETER", Element::Actual),
 ];
 
 /// The word of that spelling, in any case.

@@ -1,0 +1,46 @@
+//! G001: alternative branches of a chart that can be taken together.
+
+use crate::analysis::Site;
+use crate::analysis::reach::{Part, Study};
+use crate::analysis::satisfy::{Answer, Witness};
+use crate::lint::{ProgramCx, Sink};
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    for study in cx.studies() {
+        for part in &study.parts {
+            for (at, &later) in part.component.crossings.iter().enumerate() {
+                divergence(study, part, &part.component.crossings[..at], later, sink);
+            }
+        }
+    }
+}
+
+/// Compares a transition with those before it that leave the same step.
+fn divergence(study: &Study<'_, '_>, part: &Part, before: &[usize], later: usize, sink: &mut Sink<'_, Site>) {
+    let net = &study.net;
+    let from = &net.crossings[later].from;
+    let beside = before.iter().filter(|&&it| net.crossings[it].from.iter().any(|it| from.contains(it)));
+    let found: Vec<(usize, Witness)> = beside
+        .filter_map(|&it| match net.can_be(&part.component, &part.all, &[(it, true), (later, true)]) {
+            Answer::Possible(witness) => Some((it, witness)),
+            Answer::Never | Answer::NotDecided => None,
+        })
+        .collect();
+    let Some((first, witness)) = found.first() else { return };
+    let Some(&step) = net.crossings[*first].from.iter().find(|it| from.contains(it)) else { return };
+    let space = net.space();
+    let values: Vec<String> = witness.given.iter().map(|it| space.describe(it)).collect();
+    let when = if values.is_empty() { "always".to_owned() } else { format!("when {}", values.join(", ")) };
+    let mut finding = sink
+        .report(
+            net.transition(later).site(),
+            format!("two branches behind step `{}` are taken together {when}", net.name(step)),
+        )
+        .label("this branch")
+        .related_all(found.iter().map(|(it, _)| (net.transition(*it).site(), "and this one".to_owned())))
+        .related(net.step(step).site(), "the step that they leave");
+    if witness.assumed {
+        finding = finding.note("values that are compared with one another, or computed, were taken as free");
+    }
+    finding.note("branches of a divergence exclude each other when each asks that those before it are not taken");
+}

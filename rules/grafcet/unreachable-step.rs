@@ -1,0 +1,40 @@
+//! G016: steps that are never active.
+
+use rustc_hash::FxHashSet;
+
+use crate::analysis::Site;
+use crate::analysis::reach::{Node, Part, Study};
+use crate::lint::{ProgramCx, Sink};
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    for study in cx.studies().iter().filter(|it| !it.net.has_gaps && it.net.knows_presets()) {
+        for part in &study.parts {
+            // Without a start, all of it is another rule's affair.
+            if !part.all.is_partial && !part.all.situations.is_empty() {
+                judge(study, part, sink);
+            }
+        }
+    }
+}
+
+fn judge(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<'_, Site>) {
+    let net = &study.net;
+    let reached: FxHashSet<Node> = part.all.situations.iter().flat_map(|it| net.active(&part.component, it)).collect();
+    let never: Vec<Node> = part.component.nodes.iter().copied().filter(|it| !reached.contains(it)).collect();
+    // What comes behind a step that is never active has the same cause.
+    let into = |node: Node| part.component.crossings.iter().filter(move |&&it| net.crossings[it].to.contains(&node));
+    let first: Vec<Node> = never
+        .iter()
+        .copied()
+        .filter(|&node| into(node).any(|&it| net.crossings[it].from.iter().any(|it| reached.contains(it))))
+        .collect();
+    let Some(&primary) = first.first().or(never.first()) else { return };
+    let message = format!("step `{}` is never active", net.name(primary));
+    let others = never.iter().filter(|it| **it != primary);
+    let mut finding = sink
+        .report(net.step(primary).site(), message)
+        .related_all(others.map(|&it| (net.step(it).site(), format!("nor is step `{}`", net.name(it)))));
+    for &it in into(primary) {
+        finding = finding.related(net.transition(it).site(), "never crossed");
+    }
+}

@@ -1,0 +1,28 @@
+//! G018: a step that is activated while it is active.
+
+use rustc_hash::FxHashSet;
+
+use crate::analysis::Site;
+use crate::analysis::reach::Node;
+use crate::lint::{ProgramCx, Sink};
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    for study in cx.studies().iter().filter(|it| !it.net.has_gaps) {
+        let net = &study.net;
+        for part in &study.parts {
+            let mut seen: FxHashSet<Node> = FxHashSet::default();
+            for &(situation, crossing, step) in &part.own.lost {
+                // Parallel branches that come together as alternatives are one rule's affair, and what follows from it.
+                let is_mismatch = |step| net.opened_in_parallel(&part.component, step).is_some();
+                if part.own.lost.iter().any(|it| is_mismatch(it.2)) || !seen.insert(step) {
+                    continue;
+                }
+                let message = format!("step `{}` can be activated while it is active", net.name(step));
+                sink.report(net.step(step).site(), message)
+                    .related(net.transition(crossing).site(), "by this transition")
+                    .note(format!("reached by {}", net.trace(&part.component, &part.own, situation)))
+                    .note("the step stays active as if once: one of the two sequences that led to it is lost");
+            }
+        }
+    }
+}

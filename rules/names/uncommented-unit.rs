@@ -1,0 +1,46 @@
+//! N005: a section, subroutine, block or step without a comment.
+
+use crate::analysis::Site;
+use crate::analysis::facts::UnitFacts;
+use crate::analysis::program::ProgramIndex;
+use crate::lint::{ProgramCx, Sink};
+use crate::model::entity::{BlockKind, Entity, Part};
+use crate::syntax::Language;
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    let mut before: Option<&UnitFacts> = None;
+    for (unit, &facts) in (0..).zip(&cx.program.units) {
+        // The comment of a section may stand in the head that an exchange file gives it.
+        let is_headed = before.replace(facts).is_some_and(|it| it.entity == Entity::Container && it.commented);
+        // A cross-reference shows no comments.
+        if facts.language == Language::Pl7Xref {
+            continue;
+        }
+        if let Some(chart) = facts.chart.as_ref().filter(|it| it.defines && !it.has_gaps) {
+            let mut steps = chart.steps.iter().filter(|it| !it.commented).map(|it| (&it.text, it.anchor));
+            if let Some((text, anchor)) = steps.next() {
+                let others = steps.map(|(text, anchor)| (Site { unit, anchor }, format!("nor has step {text}")));
+                sink.report(Site { unit, anchor }, format!("the step {text} has no comment")).related_all(others);
+            }
+        } else if let Some(what) = kind(&facts.entity)
+            && !facts.commented
+            && !is_headed
+            && !facts.has_gaps
+            && facts.instructions > 0
+        {
+            sink.report(ProgramIndex::heading(unit), format!("this {what} has no comment"));
+        }
+    }
+}
+
+/// What a unit is that should say what it does.
+fn kind(entity: &Entity) -> Option<&'static str> {
+    Some(match entity {
+        Entity::Pl7 { part: Part::Subroutine(_), .. } => "subroutine",
+        Entity::Pl7 { part: Part::Main | Part::Preliminary | Part::Posterior, .. } => "section",
+        Entity::Pl7 { part: Part::Event, .. } => "event",
+        Entity::Dfb { .. } => "DFB",
+        Entity::Block { kind: BlockKind::Ob | BlockKind::Fb | BlockKind::Fc, .. } => "block",
+        _ => return None,
+    })
+}

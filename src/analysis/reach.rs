@@ -1,0 +1,793 @@
+//! The situations that a chart can reach, by the rules of evolution (GRF:128-152, PL7:5123-5186).
+//!
+//! All transitions that can be crossed are crossed at once; the steps before them go off, those behind them go on, and a
+//! step that does both stays on. Receptivities are free, but for what [`satisfy`] excludes: which of those that are valid
+//! together can be true together. Transitions that share no step and no object are independent: crossing them one after
+//! the other reaches what crossing them together reaches.
+//!
+//! Charts that nothing connects are looked at apart. What is too large is said to be not decided.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::chart::{Chart, FactReceptivity, Step, Transition};
+use super::facts::{self, UnitFacts};
+use super::program::ProgramIndex;
+use super::satisfy::{Answer, Space};
+use crate::model::chart::{Graph, StepName};
+use crate::model::entity::Family;
+use crate::model::expr::{ExprId, Exprs, ObjectId};
+use crate::model::object::{Area, Class, Object};
+use crate::model::unit::Mode;
+use crate::syntax::pl7::chart::ast::StepKind;
+
+/// A chart with more situations than this is not looked at to the end.
+const MAX_SITUATIONS: usize = 20_000;
+
+/// Of more transitions than this that depend on one another, only single ones and pairs are crossed.
+const MAX_TOGETHER: usize = 5;
+
+/// A step of some graph of a section, numbered over all of them.
+pub type Node = u32;
+
+/// A transition with the steps of all graphs that it concerns: crossing into a macro-step starts its expansion, and what
+/// follows a macro-step waits for the last step of the expansion.
+#[derive(Debug)]
+pub struct Crossing {
+    /// Which chart, and which of its transitions.
+    pub chart: usize,
+    pub transition: usize,
+    pub from: Vec<Node>,
+    pub to: Vec<Node>,
+    pub guard: Guarded,
+}
+
+/// What is known of a receptivity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Guarded {
+    By(ExprId),
+    /// Not programmed: never crossed.
+    Never,
+    /// Not understood.
+    Unknown,
+}
+
+/// The graphs of one section.
+pub struct Net<'p, 'a> {
+    pub charts: Vec<&'p Chart<'a>>,
+    /// Which chart, and which of its steps.
+    pub nodes: Vec<(usize, u32)>,
+    pub crossings: Vec<Crossing>,
+    /// Some of the section was not understood.
+    pub has_gaps: bool,
+    /// Steps that the program itself sets, those of one place and condition together.
+    presets: Vec<Vec<Node>>,
+    /// The program writes step bits in a way that does not tell which.
+    writes_anywhere: bool,
+    /// The program sets, resets or freezes the chart as a whole (%S21 to %S24).
+    is_commanded: bool,
+    exprs: Exprs,
+    objects: Vec<&'a Object>,
+    family: Family,
+    /// Objects that a receptivity depends on, by groups of objects that share memory.
+    supports: Vec<Vec<u32>>,
+    /// Reads of step bits of this net, by node.
+    step_reads: FxHashMap<Node, ExprId>,
+}
+
+/// Steps that transitions connect.
+#[derive(Debug)]
+pub struct Component {
+    /// Sorted.
+    pub nodes: Vec<Node>,
+    pub crossings: Vec<usize>,
+    pub initial: Vec<Node>,
+}
+
+/// A connected chart with what it reaches.
+#[derive(Debug)]
+pub struct Part {
+    pub component: Component,
+    /// From the initial situation, branches of one step apart.
+    pub own: Reached,
+    /// From there and from what the program sets, as receptivities allow.
+    pub all: Reached,
+}
+
+/// The charts of a section, and what they reach.
+pub struct Study<'p, 'a> {
+    pub net: Net<'p, 'a>,
+    pub parts: Vec<Part>,
+}
+
+impl<'p, 'a> Study<'p, 'a> {
+    /// Of each section with charts.
+    pub fn all(program: &'p ProgramIndex<'a>) -> Vec<Self> {
+        let study = |net: Net<'p, 'a>| {
+            let part = |component: Component| {
+                let own = net.reach(&component);
+                let all = net.reach_all(&component);
+                Part { component, own, all }
+            };
+            let parts = net.components().into_iter().map(part).collect();
+            Self { net, parts }
+        };
+        Net::all(program).into_iter().map(study).collect()
+    }
+}
+
+/// A set of steps of a component, by their places in it.
+pub type Situation = Box<[u64]>;
+
+/// Situations that are reached, in the order in which they were found.
+#[derive(Debug, Default)]
+pub struct Reached {
+    pub situations: Vec<Situation>,
+    /// Where each was reached from, by crossing what.
+    from: Vec<Option<(u32, Vec<usize>)>>,
+    /// Not all situations were looked at.
+    pub is_partial: bool,
+    /// Situations that nothing leaves.
+    pub dead: Vec<u32>,
+    /// A step that is activated while it is active: in which situation, by crossing what, which step.
+    pub lost: Vec<(u32, usize, Node)>,
+}
+
+impl<'p, 'a> Net<'p, 'a> {
+    /// One for each section with charts, in the order of the program.
+    pub fn all(program: &'p ProgramIndex<'a>) -> Vec<Self> {
+        let mut sections: Vec<Vec<&'p Chart<'a>>> = Vec::new();
+        for chart in program.charts() {
+            let same =
+                |it: &&mut Vec<&Chart<'_>>| it.iter().any(|it| it.task == chart.task && it.section == chart.section);
+            match sections.iter_mut().find(same) {
+                Some(section) => section.push(chart),
+                None => sections.push(vec![chart]),
+            }
+        }
+        sections.into_iter().map(|it| Self::new(program, it)).collect()
+    }
+
+    fn new(program: &'p ProgramIndex<'a>, charts: Vec<&'p Chart<'a>>) -> Self {
+        let has_gaps = charts.iter().any(|it| it.has_gaps);
+        let mut net = Self {
+            charts,
+            nodes: Vec::new(),
+            crossings: Vec::new(),
+            has_gaps,
+            presets: Vec::new(),
+            writes_anywhere: false,
+            is_commanded: false,
+            exprs: Exprs::default(),
+            objects: Vec::new(),
+            family: program.family,
+            supports: Vec::new(),
+            step_reads: FxHashMap::default(),
+        };
+        for (at, chart) in net.charts.iter().enumerate() {
+            net.nodes.extend((0..).take(chart.steps.len()).map(|step| (at, step)));
+        }
+        net.cross(program);
+        net.find_supports();
+        net.find_presets(program);
+        net
+    }
+
+    fn graph(&self, graph: Graph) -> Option<usize> {
+        self.charts.iter().position(|it| it.graph == graph)
+    }
+
+    fn node(&self, chart: usize, step: u32) -> Node {
+        let before: usize = self.charts[..chart].iter().map(|it| it.steps.len()).sum();
+        u32::try_from(before).unwrap_or(u32::MAX).saturating_add(step)
+    }
+
+    pub fn step(&self, node: Node) -> &'p Step<'a> {
+        let (chart, step) = self.nodes[node as usize];
+        &self.charts[chart].steps[step as usize]
+    }
+
+    pub fn transition(&self, crossing: usize) -> &'p Transition<'a> {
+        let it = &self.crossings[crossing];
+        &self.charts[it.chart].transitions[it.transition]
+    }
+
+    /// A step as a message names it: `3`, of an expansion `M2.3`.
+    pub fn name(&self, node: Node) -> String {
+        let (chart, _) = self.nodes[node as usize];
+        let text = &self.step(node).it.text;
+        match self.charts[chart].graph {
+            Graph::Main => text.to_string(),
+            Graph::Macro(number) => format!("M{number}.{text}"),
+        }
+    }
+
+    pub fn space(&self) -> Space<'_> {
+        Space { exprs: &self.exprs, objects: &self.objects, family: self.family }
+    }
+
+    fn cross(&mut self, program: &ProgramIndex<'a>) {
+        let (mut ids, mut exprs, mut crossings) = (Ids::default(), Exprs::default(), Vec::new());
+        for (chart, it) in self.charts.iter().enumerate() {
+            // The step of an expansion that stands for a macro-step on one side.
+            let inner = |step: u32, end: &StepName| {
+                let Some(StepName::Macro(number)) = it.steps[step as usize].it.name else { return None };
+                let of = self.graph(Graph::Macro(number))?;
+                Some(self.node(of, self.charts[of].step_named(end)?))
+            };
+            for (transition, crossed) in it.transitions.iter().enumerate().filter(|it| it.1.is_whole) {
+                let side = |steps: &[u32], end: StepName| {
+                    let mut nodes: Vec<Node> = steps.iter().map(|&it| self.node(chart, it)).collect();
+                    nodes.extend(steps.iter().filter_map(|&it| inner(it, &end)));
+                    nodes.sort_unstable();
+                    nodes.dedup();
+                    nodes
+                };
+                let (from, to) = (side(&crossed.sources, StepName::Out), side(&crossed.targets, StepName::In));
+                let unit = program.units[crossed.unit as usize];
+                let guard = match &crossed.it.receptivity {
+                    FactReceptivity::Missing => Guarded::Never,
+                    FactReceptivity::Unread => Guarded::Unknown,
+                    FactReceptivity::Guard(guard) => {
+                        Guarded::By(exprs.import(guard, |it| ids.of(crossed.unit, unit, it)))
+                    }
+                };
+                crossings.push(Crossing { chart, transition, from, to, guard });
+            }
+        }
+        (self.exprs, self.objects, self.crossings) = (exprs, ids.objects, crossings);
+        for (at, object) in (0..).zip(&self.objects) {
+            if let Some(read) = self.exprs.find_read(ObjectId(at), 0)
+                && object.class == Class::Step
+                && object.is_fixed()
+                && let Some(node) = step_of(&self.charts, object).map(|(chart, step)| self.node(chart, step))
+            {
+                self.step_reads.insert(node, read);
+            }
+        }
+    }
+
+    fn find_supports(&mut self) {
+        // Objects that share memory depend on one another.
+        let group: Vec<u32> = (0..)
+            .zip(&self.objects)
+            .map(|(at, it): (u32, _)| {
+                let overlaps = |other: &&Object| other.footprint.overlaps(&it.footprint);
+                self.objects.iter().position(overlaps).and_then(|it| u32::try_from(it).ok()).unwrap_or(at)
+            })
+            .collect();
+        let support = |it: &Crossing| match it.guard {
+            Guarded::By(guard) => {
+                let mut objects: Vec<u32> = Vec::new();
+                self.exprs.each_object(guard, |it| objects.extend(group.get(it.0 as usize)));
+                objects.sort_unstable();
+                objects.dedup();
+                objects
+            }
+            Guarded::Never | Guarded::Unknown => Vec::new(),
+        };
+        self.supports = self.crossings.iter().map(support).collect();
+    }
+
+    fn find_presets(&mut self, program: &ProgramIndex<'a>) {
+        let mut presets: FxHashMap<(u32, u32), Vec<Node>> = FxHashMap::default();
+        for uses in &program.objects {
+            let object = uses.object;
+            if object.class == Class::System && object.footprint.area == Area::SystemBits {
+                self.is_commanded |= (21..=24).contains(&object.footprint.start) && uses.is_written();
+            }
+            if object.class != Class::Step || !uses.is_written() {
+                continue;
+            }
+            // Another chart's step is none of ours.
+            let step = step_of(&self.charts, object).map(|(chart, step)| self.node(chart, step));
+            self.writes_anywhere |= !object.is_fixed() || object.ty.is_table();
+            if let Some(node) = step {
+                for it in uses.with_mode(|it| it.writes() && it != Mode::Reset) {
+                    presets.entry((it.unit, it.it.path)).or_default().push(node);
+                }
+            }
+        }
+        let mut presets: Vec<((u32, u32), Vec<Node>)> = presets.into_iter().collect();
+        presets.sort_unstable();
+        self.presets = presets.into_iter().map(|it| it.1).collect();
+    }
+
+    /// Whether the program itself puts the chart into situations, or takes it out of some.
+    pub fn is_commanded(&self) -> bool {
+        self.is_commanded || self.writes_anywhere || !self.presets.is_empty()
+    }
+
+    /// Whether which steps the program sets is known.
+    pub fn knows_presets(&self) -> bool {
+        !self.writes_anywhere
+    }
+
+    /// Steps that transitions connect with one another, in the order of their first steps.
+    pub fn components(&self) -> Vec<Component> {
+        let mut parent: Vec<u32> = (0..).take(self.nodes.len()).collect();
+        fn root(parent: &mut [u32], mut at: u32) -> u32 {
+            while parent[at as usize] != at {
+                parent[at as usize] = parent[parent[at as usize] as usize];
+                at = parent[at as usize];
+            }
+            at
+        }
+        for it in &self.crossings {
+            let mut ends = it.from.iter().chain(&it.to);
+            let Some(&first) = ends.next() else { continue };
+            for &end in ends {
+                let (a, b) = (root(&mut parent, first), root(&mut parent, end));
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut index: FxHashMap<u32, usize> = FxHashMap::default();
+        let mut components: Vec<Component> = Vec::new();
+        for node in (0..).take(self.nodes.len()) {
+            // A step that is drawn a second time is the first one.
+            let (chart, step) = self.nodes[node as usize];
+            let name = self.step(node).it.name.as_ref();
+            if name.and_then(|it| self.charts[chart].step_named(it)).is_some_and(|it| it != step) {
+                continue;
+            }
+            let of = root(&mut parent, node);
+            let at = *index.entry(of).or_insert_with(|| {
+                components.push(Component { nodes: Vec::new(), crossings: Vec::new(), initial: Vec::new() });
+                components.len() - 1
+            });
+            components[at].nodes.push(node);
+            if self.step(node).it.kind == StepKind::Initial {
+                components[at].initial.push(node);
+            }
+        }
+        for (at, it) in self.crossings.iter().enumerate() {
+            let of = it.from.first().and_then(|&it| index.get(&root(&mut parent, it)));
+            if let Some(&of) = of {
+                components[of].crossings.push(at);
+            }
+        }
+        components
+    }
+
+    /// What a component reaches from its initial situation when branches of one step are never taken together: that they
+    /// can be is a finding of its own, and what follows from it is none.
+    pub fn reach(&self, component: &Component) -> Reached {
+        self.explore(component, &[component.initial.clone()], true)
+    }
+
+    /// What it reaches from there and from what the program sets.
+    pub fn reach_all(&self, component: &Component) -> Reached {
+        let own = |it: &Vec<Node>| -> Vec<Node> {
+            it.iter().copied().filter(|it| component.nodes.binary_search(it).is_ok()).collect()
+        };
+        let presets = self.presets.iter().map(own).filter(|it| !it.is_empty());
+        let starts: Vec<Vec<Node>> = [component.initial.clone()].into_iter().chain(presets).collect();
+        self.explore(component, &starts, false)
+    }
+
+    fn explore(&self, component: &Component, starts: &[Vec<Node>], apart: bool) -> Reached {
+        let walker = Walker { apart, ..Walker::new(self, component) };
+        let mut reached = Reached::default();
+        let mut known: FxHashMap<Situation, u32> = FxHashMap::default();
+        let mut lost: FxHashSet<(usize, Node)> = FxHashSet::default();
+        let mut cache = Cache::default();
+        for start in starts.iter().filter(|it| !it.is_empty()) {
+            let situation = walker.situation(start);
+            if !known.contains_key(&situation) {
+                known.insert(situation.clone(), as_index(reached.situations.len()));
+                reached.situations.push(situation);
+                reached.from.push(None);
+            }
+        }
+        let mut next = 0;
+        while next < reached.situations.len() {
+            let at = as_index(next);
+            let situation = reached.situations[next].clone();
+            next += 1;
+            let valid = walker.valid(&situation);
+            let crossed = walker.crossings(&situation, &valid, &mut cache, &mut reached.is_partial);
+            if valid.is_empty() || crossed.is_empty() && !reached.is_partial {
+                reached.dead.push(at);
+            }
+            for set in crossed {
+                let after = walker.after(&situation, &set, |crossing, node| {
+                    if lost.insert((crossing, node)) {
+                        reached.lost.push((at, crossing, node));
+                    }
+                });
+                if known.contains_key(&after) {
+                    continue;
+                }
+                if reached.situations.len() >= MAX_SITUATIONS {
+                    reached.is_partial = true;
+                    return reached;
+                }
+                known.insert(after.clone(), as_index(reached.situations.len()));
+                reached.situations.push(after);
+                reached.from.push(Some((at, set)));
+            }
+        }
+        reached
+    }
+
+    /// Active steps of a situation.
+    pub fn active<'s>(&self, component: &'s Component, situation: &'s Situation) -> impl Iterator<Item = Node> + 's {
+        component.nodes.iter().enumerate().filter(|(at, _)| has(situation, *at)).map(|it| *it.1)
+    }
+
+    /// How a situation is reached, in the steps that are active: `0 -> 1 -> 3,4`.
+    pub fn trace(&self, component: &Component, reached: &Reached, situation: u32) -> String {
+        /// A longer way is told by its ends.
+        const LONGEST: usize = 12;
+        let mut way = vec![situation];
+        while let Some(Some((before, _))) = reached.from.get(way[way.len() - 1] as usize) {
+            way.push(*before);
+        }
+        way.reverse();
+        let name = |&it: &u32| {
+            let names: Vec<String> =
+                self.active(component, &reached.situations[it as usize]).map(|it| self.name(it)).collect();
+            if names.is_empty() { "none".to_owned() } else { names.join(",") }
+        };
+        if way.len() <= LONGEST {
+            let names: Vec<String> = way.iter().map(name).collect();
+            return names.join(" -> ");
+        }
+        let (first, last) = (&way[..LONGEST / 2], &way[way.len() - LONGEST / 2..]);
+        let [first, last] = [first, last].map(|it| it.iter().map(name).collect::<Vec<_>>().join(" -> "));
+        format!("{first} -> ... -> {last}")
+    }
+
+    /// Whether receptivities can have the values wanted of them in some situation in which all their transitions are valid,
+    /// with the values of objects that do it. Never where no situation is such, or one of them is not known.
+    pub fn can_be(&self, component: &Component, reached: &Reached, wanted: &[(usize, bool)]) -> Answer {
+        let guards: Option<Vec<(ExprId, bool)>> = wanted
+            .iter()
+            .map(|&(it, value)| match self.crossings[it].guard {
+                Guarded::By(guard) => Some((guard, value)),
+                Guarded::Never | Guarded::Unknown => None,
+            })
+            .collect();
+        let Some(guards) = guards else { return Answer::Never };
+        let crossings: Vec<usize> = wanted.iter().map(|it| it.0).collect();
+        let walker = Walker::new(self, component);
+        let asked = walker.asked(&crossings);
+        let mut seen: FxHashSet<Vec<bool>> = FxHashSet::default();
+        let mut answer = Answer::Never;
+        for situation in &reached.situations {
+            if !crossings.iter().all(|&it| walker.is_valid(situation, it)) {
+                continue;
+            }
+            let values: Vec<bool> = asked.iter().map(|it| has(situation, it.0)).collect();
+            if !seen.insert(values.clone()) {
+                continue;
+            }
+            let steps = asked.iter().zip(values).map(|(it, value)| (it.1, value));
+            let all: Vec<(ExprId, bool)> = guards.iter().copied().chain(steps).collect();
+            match self.space().solve(&all) {
+                Answer::Never => {}
+                Answer::NotDecided => answer = Answer::NotDecided,
+                found @ Answer::Possible(_) => return found,
+            }
+        }
+        if reached.is_partial && answer.is_never() { Answer::NotDecided } else { answer }
+    }
+
+    /// Whether a transition is valid in some situation.
+    pub fn is_ever_valid(&self, component: &Component, reached: &Reached, crossing: usize) -> bool {
+        let walker = Walker::new(self, component);
+        reached.situations.iter().any(|it| walker.is_valid(it, crossing))
+    }
+
+    /// Whether a receptivity says something of an object.
+    pub fn has_objects(&self, crossing: usize) -> bool {
+        !self.supports[crossing].is_empty()
+    }
+
+    /// Steps that a situation does not hold and a transition waits for, and those that it holds.
+    pub fn waits(&self, component: &Component, situation: &Situation, crossing: usize) -> (Vec<Node>, Vec<Node>) {
+        let active: FxHashSet<Node> = self.active(component, situation).collect();
+        self.crossings[crossing].from.iter().partition(|it| !active.contains(it))
+    }
+
+    /// Steps that come after some, by crossings other than those of `without`, but not after the step `end`.
+    fn after_steps(&self, starts: &[Node], without: &[usize], end: Option<Node>) -> FxHashSet<Node> {
+        let mut seen: FxHashSet<Node> = starts.iter().copied().collect();
+        let mut stack: Vec<Node> = starts.to_vec();
+        while let Some(node) = stack.pop() {
+            if Some(node) == end {
+                continue;
+            }
+            for (at, it) in self.crossings.iter().enumerate() {
+                if it.from.contains(&node) && !without.contains(&at) {
+                    stack.extend(it.to.iter().copied().filter(|it| seen.insert(*it)));
+                }
+            }
+        }
+        seen
+    }
+
+    /// Of a step that is activated while it is active: the transition that opens parallel branches, two of which come
+    /// together at the step by transitions of their own, as alternative ones do.
+    pub fn opened_in_parallel(&self, component: &Component, step: Node) -> Option<(usize, [usize; 2])> {
+        let into: Vec<usize> =
+            component.crossings.iter().copied().filter(|&it| self.crossings[it].to.contains(&step)).collect();
+        for &opening in component.crossings.iter().filter(|&&it| self.crossings[it].to.len() > 1) {
+            let branches: Vec<FxHashSet<Node>> =
+                self.crossings[opening].to.iter().map(|&it| self.after_steps(&[it], &[opening], Some(step))).collect();
+            let leads = |branch: &FxHashSet<Node>, crossing: usize| {
+                self.crossings[crossing].from.iter().all(|it| branch.contains(it) && *it != step)
+            };
+            for (at, &a) in into.iter().enumerate() {
+                for &b in &into[at + 1..] {
+                    let alone = |x: usize, y: usize| branches.iter().any(|it| leads(it, x) && !leads(it, y));
+                    if alone(a, b) && alone(b, a) {
+                        return Some((opening, [a, b]));
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Of a transition that waits for steps on several branches: the step whose alternative branches they are.
+    pub fn opened_as_alternatives(&self, component: &Component, crossing: usize) -> Option<Node> {
+        let from = &self.crossings[crossing].from;
+        component.nodes.iter().copied().find(|&step| {
+            let out: Vec<usize> = component
+                .crossings
+                .iter()
+                .copied()
+                .filter(|&it| it != crossing && self.crossings[it].from.contains(&step))
+                .collect();
+            let branches: Vec<FxHashSet<Node>> =
+                out.iter().map(|&it| self.after_steps(&self.crossings[it].to, &[crossing, it], Some(step))).collect();
+            // Each branch leads to one of the steps, and none to all of them.
+            let found = |it: &FxHashSet<Node>| from.iter().filter(|step| it.contains(step)).count();
+            let led: Vec<&FxHashSet<Node>> = branches.iter().filter(|it| found(it) > 0).collect();
+            led.len() > 1
+                && led.iter().all(|it| found(it) < from.len())
+                && from.iter().all(|step| led.iter().any(|it| it.contains(step)))
+        })
+    }
+
+    /// Whether steps lead back to themselves.
+    pub fn has_loop(&self, component: &Component) -> bool {
+        component.crossings.iter().any(|&it| {
+            let after = self.after_steps(&self.crossings[it].to, &[], None);
+            self.crossings[it].from.iter().any(|it| after.contains(it))
+        })
+    }
+}
+
+/// The chart and step that a step bit is of.
+fn step_of(charts: &[&Chart<'_>], object: &Object) -> Option<(usize, u32)> {
+    charts.iter().enumerate().find_map(|(at, it)| Some((at, it.step_at(&object.footprint)?)))
+}
+
+/// Objects of several units as one list.
+#[derive(Default)]
+struct Ids<'a> {
+    objects: Vec<&'a Object>,
+    /// Those that several units share, by hash.
+    shared: FxHashMap<u64, Vec<ObjectId>>,
+    own: FxHashMap<(u32, ObjectId), ObjectId>,
+}
+
+impl<'a> Ids<'a> {
+    fn of(&mut self, unit: u32, facts: &'a UnitFacts, object: ObjectId) -> ObjectId {
+        let Some(fact) = facts.objects.get(object.0 as usize) else { return object };
+        let next = ObjectId(as_index(self.objects.len()));
+        if facts::is_shared(&fact.object) {
+            let same = |it: &&ObjectId| {
+                let other = self.objects[it.0 as usize];
+                let key = |it: &Object| (it.ty, it.indexed);
+                other.footprint == fact.object.footprint && key(other) == key(&fact.object) && !other.indexed
+            };
+            let list = self.shared.entry(fact.hash).or_default();
+            if let Some(&id) = list.iter().find(same) {
+                return id;
+            }
+            list.push(next);
+        } else if let Some(&id) = self.own.get(&(unit, object)) {
+            return id;
+        } else {
+            self.own.insert((unit, object), next);
+        }
+        self.objects.push(&fact.object);
+        next
+    }
+}
+
+/// Which sets of crossings that depend on one another are possible, by the crossings and the step bits that they ask for.
+type Cache = FxHashMap<(Vec<usize>, Vec<bool>), (Vec<Vec<usize>>, bool)>;
+
+struct Walker<'n, 'p, 'a> {
+    net: &'n Net<'p, 'a>,
+    component: &'n Component,
+    place: FxHashMap<Node, usize>,
+    words: usize,
+    /// Branches of one step are not taken together.
+    apart: bool,
+}
+
+fn has(situation: &[u64], at: usize) -> bool {
+    situation.get(at / 64).is_some_and(|it| it >> (at % 64) & 1 == 1)
+}
+
+fn as_index(at: usize) -> u32 {
+    u32::try_from(at).unwrap_or(u32::MAX)
+}
+
+impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
+    fn new(net: &'n Net<'p, 'a>, component: &'n Component) -> Self {
+        let place = component.nodes.iter().enumerate().map(|(at, it)| (*it, at)).collect();
+        Self { net, component, place, words: component.nodes.len().div_ceil(64), apart: false }
+    }
+
+    fn situation(&self, nodes: &[Node]) -> Situation {
+        let mut situation = vec![0; self.words].into_boxed_slice();
+        nodes.iter().filter_map(|it| self.place.get(it)).for_each(|at| situation[at / 64] |= 1 << (at % 64));
+        situation
+    }
+
+    fn is_valid(&self, situation: &[u64], crossing: usize) -> bool {
+        let it = &self.net.crossings[crossing];
+        it.from.iter().all(|it| self.place.get(it).is_some_and(|at| has(situation, *at)))
+    }
+
+    /// Crossings whose steps are all active, but those that are never crossed.
+    fn valid(&self, situation: &[u64]) -> Vec<usize> {
+        let can = |it: &usize| self.net.crossings[*it].guard != Guarded::Never && self.is_valid(situation, *it);
+        self.component.crossings.iter().copied().filter(can).collect()
+    }
+
+    /// Step bits of the component that receptivities ask for: their places, and their reads.
+    fn asked(&self, crossings: &[usize]) -> Vec<(usize, ExprId)> {
+        let mut asked: Vec<(usize, ExprId)> = Vec::new();
+        for &it in crossings {
+            if let Guarded::By(guard) = self.net.crossings[it].guard {
+                self.net.exprs.each_read(guard, |read| {
+                    let node = self.net.step_reads.iter().find(|it| *it.1 == read).map(|it| *it.0);
+                    asked.extend(node.and_then(|it| self.place.get(&it)).map(|&at| (at, read)));
+                });
+            }
+        }
+        asked.sort_unstable();
+        asked.dedup();
+        asked
+    }
+
+    /// Sets of crossings, each of which can be what happens next.
+    fn crossings(&self, situation: &[u64], valid: &[usize], cache: &mut Cache, partial: &mut bool) -> Vec<Vec<usize>> {
+        let mut free: Vec<Vec<usize>> = Vec::new();
+        // Of those that depend on one another and cannot all wait, one set or the other happens.
+        let mut urgent: Vec<Vec<Vec<usize>>> = Vec::new();
+        for cluster in self.clusters(valid) {
+            let asked = self.asked(&cluster);
+            let key = (cluster, asked.iter().map(|it| has(situation, it.0)).collect::<Vec<bool>>());
+            let (sets, is_partial) = match cache.get(&key) {
+                Some(known) => known.clone(),
+                None => {
+                    let steps: Vec<(ExprId, bool)> = asked.iter().map(|it| it.1).zip(key.1.iter().copied()).collect();
+                    let found = self.sets(&key.0, &steps);
+                    cache.insert(key, found.clone());
+                    found
+                }
+            };
+            *partial |= is_partial;
+            if sets.iter().any(Vec::is_empty) {
+                free.extend(sets.into_iter().filter(|it| !it.is_empty()));
+            } else if !sets.is_empty() {
+                urgent.push(sets);
+            }
+        }
+        /// More combinations than this are not looked at.
+        const MOST: usize = 256;
+        let mut bases: Vec<Vec<usize>> = vec![Vec::new()];
+        for sets in &urgent {
+            let combined = bases.iter().flat_map(|base| sets.iter().map(move |it| [base.as_slice(), it].concat()));
+            let combined: Vec<Vec<usize>> = combined.take(MOST + 1).collect();
+            *partial |= combined.len() > MOST;
+            bases = combined;
+        }
+        let alone = bases.iter().filter(|it| !it.is_empty()).cloned();
+        let with = bases.iter().flat_map(|base| free.iter().map(move |it| [base.as_slice(), it].concat()));
+        alone.chain(with).collect()
+    }
+
+    /// Valid crossings that share steps or objects, together.
+    fn clusters(&self, valid: &[usize]) -> Vec<Vec<usize>> {
+        let mut clusters: Vec<Vec<usize>> = Vec::new();
+        for &it in valid {
+            let crossing = &self.net.crossings[it];
+            let depends = |other: &usize| {
+                let other_crossing = &self.net.crossings[*other];
+                let shares = |a: &[u32], b: &[u32]| a.iter().any(|it| b.contains(it));
+                shares(&crossing.from, &other_crossing.from)
+                    || shares(&crossing.to, &other_crossing.to)
+                    || shares(&self.net.supports[it], &self.net.supports[*other])
+            };
+            let (mut own, others): (Vec<_>, Vec<_>) =
+                clusters.into_iter().partition(|cluster| cluster.iter().any(depends));
+            own.push(vec![it]);
+            clusters = others;
+            let mut joined = own.concat();
+            joined.sort_unstable();
+            clusters.push(joined);
+        }
+        clusters
+    }
+
+    /// The sets of a cluster that can be true together while the rest of it is not, and whether some were left out.
+    fn sets(&self, cluster: &[usize], steps: &[(ExprId, bool)]) -> (Vec<Vec<usize>>, bool) {
+        let space = self.net.space();
+        let is_small = cluster.len() <= MAX_TOGETHER;
+        let candidates: Vec<Vec<usize>> = if is_small {
+            (0..1_usize << cluster.len())
+                .map(|set| cluster.iter().enumerate().filter(|it| set >> it.0 & 1 == 1).map(|it| *it.1).collect())
+                .collect()
+        } else {
+            let singles = cluster.iter().map(|it| vec![*it]);
+            let pairs = cluster.iter().enumerate().flat_map(|(at, a)| cluster[at + 1..].iter().map(|b| vec![*a, *b]));
+            [Vec::new()].into_iter().chain(singles).chain(pairs).collect()
+        };
+        let mut left_out = !is_small;
+        let mut sets: Vec<Vec<usize>> = Vec::new();
+        for set in candidates {
+            let guards = cluster.iter().filter_map(|it| match self.net.crossings[*it].guard {
+                Guarded::By(guard) => Some((guard, set.contains(it))),
+                Guarded::Never | Guarded::Unknown => None,
+            });
+            let wanted: Vec<(ExprId, bool)> = guards.chain(steps.iter().copied()).collect();
+            match space.solve(&wanted) {
+                Answer::Never => {}
+                Answer::NotDecided => left_out = true,
+                Answer::Possible(_) => sets.push(set),
+            }
+        }
+        if self.apart {
+            sets = self.apart(sets);
+        }
+        (sets, left_out)
+    }
+
+    /// Of sets that cross two branches of one step, what is left when one of them is taken.
+    fn apart(&self, sets: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+        let mut found: Vec<Vec<usize>> = Vec::new();
+        for set in sets {
+            let mut kept: Vec<usize> = Vec::new();
+            for it in set {
+                let from = &self.net.crossings[it].from;
+                if !kept.iter().any(|&it| self.net.crossings[it].from.iter().any(|it| from.contains(it))) {
+                    kept.push(it);
+                }
+            }
+            if !found.contains(&kept) {
+                found.push(kept);
+            }
+        }
+        found
+    }
+
+    /// The situation after some crossings (rules 3 to 5). Tells of each step that is activated while it stays active.
+    fn after(&self, situation: &[u64], crossed: &[usize], mut lost: impl FnMut(usize, Node)) -> Situation {
+        let mut after: Situation = situation.into();
+        let places =
+            |nodes: &[Node]| -> Vec<usize> { nodes.iter().filter_map(|it| self.place.get(it).copied()).collect() };
+        for &it in crossed {
+            for at in places(&self.net.crossings[it].from) {
+                after[at / 64] &= !(1 << (at % 64));
+            }
+        }
+        for &it in crossed {
+            for &node in &self.net.crossings[it].to {
+                let Some(&at) = self.place.get(&node) else { continue };
+                if has(&after, at) {
+                    lost(it, node);
+                }
+                after[at / 64] |= 1 << (at % 64);
+            }
+        }
+        after
+    }
+}
