@@ -47,6 +47,8 @@ pub const LABELS: Range = Range::new(1, 999, "PL72:600");
 pub const JUMPS: Limit = Limit::new(42, "PL72:418");
 /// Characters of the comment of a network, an action or a receptivity (also PL72:1425, PL72:1481).
 pub const COMMENT_LENGTH: Limit = Limit::new(15, "PL72:601");
+/// Characters of the comment of a step.
+pub const STEP_COMMENT_LENGTH: Limit = Limit::new(15, "PL72:1425");
 /// Lines of a network, and contacts in a line of its test zone.
 pub const LADDER_LINES: Limit = Limit::new(4, "PL72:606");
 pub const LADDER_CONTACTS: Limit = Limit::new(9, "PL72:606");
