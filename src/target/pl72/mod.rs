@@ -31,7 +31,7 @@ pub use operation::{
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
 
-use super::{Limit, Range};
+use super::{ChartBits, Limit, Range};
 
 /// Watchdog of the master task, which is not periodic, in milliseconds (also PL72:534).
 pub const WATCHDOG_MS: Limit = Limit::new(150, "PL72:477");
@@ -65,6 +65,9 @@ pub const COLUMN_STEPS: Limit = Limit::new(6, "PL72:1342");
 pub const COLUMN_TRANSITIONS: Limit = Limit::new(6, "PL72:1343");
 pub const COLUMN_ORIGINS: Limit = Limit::new(1, "PL72:1344");
 pub const COLUMN_DESTINATIONS: Limit = Limit::new(1, "PL72:1345");
+/// What initialises, clears and prepositions or freezes charts. All are reset by the system.
+pub static CHART_BITS: ChartBits =
+    ChartBits { bits: Range::new(21, 23, "PL72:1824"), cleared: &[], only_set: Some("PL72:1824") };
 /// Steps of a chart, the initial ones included.
 pub const STEPS: Limit = Limit::new(96, "PL72:1407");
 pub const STEP_NUMBERS: Range = Range::new(0, 95, "PL72:1409");
