@@ -1,5 +1,7 @@
 //! G020: a chart, or the processing around one, in another task than MAST.
 
+use rustc_hash::FxHashMap;
+
 use crate::analysis::Site;
 use crate::analysis::program::ProgramIndex;
 use crate::lint::{ProgramCx, Sink};
@@ -7,6 +9,7 @@ use crate::model::entity::{Entity, Part, Task};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut sections: Vec<(Task, Option<&str>, Vec<u32>)> = Vec::new();
+    let mut known: FxHashMap<(Task, Option<&str>), usize> = FxHashMap::default();
     for (unit, facts) in (0..).zip(&cx.program.units) {
         let Entity::Pl7 { task, section, part } = &facts.entity else { continue };
         let is_chart = matches!(part, Part::Preliminary | Part::Chart(_) | Part::Posterior);
@@ -15,10 +18,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             continue;
         }
         let section = section.as_deref();
-        match sections.iter_mut().find(|it| (it.0, it.1) == (*task, section)) {
-            Some(it) => it.2.push(unit),
-            None => sections.push((*task, section, vec![unit])),
+        let at = *known.entry((*task, section)).or_insert(sections.len());
+        if at == sections.len() {
+            sections.push((*task, section, Vec::new()));
         }
+        sections[at].2.push(unit);
     }
     for (task, section, units) in sections {
         let Some((first, others)) = units.split_first() else { continue };

@@ -8,7 +8,7 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let Some(chart) = cx.target.chart_bits() else { return };
-    let mut preliminary = Preliminary::new(cx.program);
+    let preliminary = Preliminary::new(cx.program);
     for uses in &cx.program.objects {
         let place = &uses.object.footprint;
         let is_bit = place.area == Area::SystemBits && uses.object.ty == Type::Bool && uses.object.is_fixed();

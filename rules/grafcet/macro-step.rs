@@ -15,13 +15,13 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         return;
     }
     let mut sections: Vec<Vec<&Chart<'_>>> = Vec::new();
+    let mut known = FxHashMap::default();
     for chart in charts {
-        let is_same =
-            |it: &&mut Vec<&Chart<'_>>| it.iter().any(|it| (it.task, it.section) == (chart.task, chart.section));
-        match sections.iter_mut().find(is_same) {
-            Some(section) => section.push(chart),
-            None => sections.push(vec![chart]),
+        let at = *known.entry((chart.task, chart.section)).or_insert(sections.len());
+        if at == sections.len() {
+            sections.push(Vec::new());
         }
+        sections[at].push(chart);
     }
     for section in sections {
         uses(&section, sink);

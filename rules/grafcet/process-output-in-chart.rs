@@ -1,7 +1,7 @@
 //! G021: an output driven in the action of a step.
 
 use crate::analysis::Site;
-use crate::analysis::processing::{action_of, raised_by_several};
+use crate::analysis::processing::{InAction, may_raise, raised_by_several};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
@@ -12,15 +12,17 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         if uses.object.ty == Type::Bool && raised_by_several(cx.program, uses).is_some() {
             continue;
         }
-        let mut places = uses
-            .with_mode(Mode::writes)
-            .filter_map(|it| Some((it, action_of(cx.program, it)?)))
-            .collect::<Vec<_>>()
-            .into_iter();
-        let Some((first, action)) = places.next() else { continue };
-        let message = format!("`{}` is driven directly in an action of {}", uses.object.text, action.describe());
-        sink.report(first.site(), message).related_all(
-            places.map(|(it, action)| (it.site(), format!("also {} here, in {}", it.mode.verb(), action.describe()))),
-        );
+        let places = uses.with_mode(Mode::writes).filter_map(|it| Some((it, InAction::of(cx.program, it)?)));
+        let places: Vec<_> = places.collect();
+        let at = places.iter().position(|it| may_raise(it.0)).unwrap_or_default();
+        let Some((first, action)) = places.get(at) else { continue };
+        let others = places.iter().enumerate().filter(|it| it.0 != at);
+        let others = others
+            .map(|(_, (it, action))| (it.site(), format!("also {} here, in {}", it.mode.verb(), action.describe())));
+        sink.report(
+            first.site(),
+            format!("`{}` is driven directly in an action of {}", uses.object.text, action.describe()),
+        )
+        .related_all(others);
     }
 }

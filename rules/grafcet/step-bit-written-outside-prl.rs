@@ -7,7 +7,7 @@ use crate::model::object::Class;
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    let mut preliminary = Preliminary::new(cx.program);
+    let preliminary = Preliminary::new(cx.program);
     // What is given to a call need not be written, and tables and indexes are G027's affair.
     let is_write = |it: Mode| it.writes() && it != Mode::InOut;
     for uses in &cx.program.objects {

@@ -2,10 +2,9 @@
 
 use crate::analysis::Site;
 use crate::analysis::drives::Hidden;
-use crate::analysis::processing::{InAction, action_of, is_stored, may_raise};
+use crate::analysis::processing::{InAction, is_stored, may_raise};
 use crate::analysis::program::{Context, GlobalUse, ObjectUses, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
-use crate::model::chart::ActionKind;
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
 
@@ -45,33 +44,31 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// The places that make a bit 1, where nothing makes it 0.
 struct Raised<'a> {
     /// The first in an action.
-    first: (GlobalUse<'a>, InAction),
+    first: (GlobalUse<'a>, InAction<'a>),
     others: Vec<GlobalUse<'a>>,
 }
 
 impl<'a> Raised<'a> {
     fn new(program: &ProgramIndex<'a>, uses: &ObjectUses<'a>) -> Option<Self> {
-        let mut first: Option<(GlobalUse<'a>, InAction)> = None;
+        let mut first: Option<(GlobalUse<'a>, InAction<'a>)> = None;
         let mut others = Vec::new();
         let (mut is_computed, mut is_of_one_step) = (false, true);
         for it in uses.with_mode(|it| it.writes() || matches!(it, Mode::Drive(_))) {
-            let action = action_of(program, it);
+            let action = InAction::of(program, it);
             let stays = match it.mode {
                 Mode::Set => !it.it.own && (action.is_some() || it.it.conditional || is_in_event(program, it.unit)),
                 Mode::Assign | Mode::AssignNot if it.it.constant.is_some() => may_raise(it),
                 // Its last value stays when the step is left.
                 Mode::Assign | Mode::AssignNot => {
                     is_computed = true;
-                    let is_last = |it: &InAction| it.kind == Some(ActionKind::Continuous) && it.steps.len() == 1;
-                    it.it.of_bits && action.as_ref().is_some_and(is_last)
+                    it.it.of_bits && action.is_some_and(|it| it.is_continuous_of_one_step())
                 }
                 _ => false,
             };
             if !stays {
                 return None;
             }
-            is_of_one_step &=
-                action.is_some() && first.iter().all(|it| Some(&it.1.steps) == action.as_ref().map(|it| &it.steps));
+            is_of_one_step &= action.is_some_and(|it| first.as_ref().is_none_or(|first| first.1.has_steps_of(&it)));
             match action {
                 Some(action) if first.is_none() => first = Some((*it, action)),
                 _ => others.push(*it),

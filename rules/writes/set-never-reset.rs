@@ -2,7 +2,7 @@
 
 use crate::analysis::Site;
 use crate::analysis::drives::Hidden;
-use crate::analysis::processing::action_of;
+use crate::analysis::processing::InAction;
 use crate::analysis::program::{Context, GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Severity, Sink};
 use crate::model::object::{Class, Type};
@@ -25,7 +25,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let resets: Vec<&GlobalUse<'_>> = uses.with_mode(|it| it == Mode::Reset).collect();
         let Some((missing, places)) = one_sided(&sets, &resets) else { continue };
         // What a step stores is G011's affair.
-        if missing == Mode::Reset && sets.iter().any(|it| action_of(cx.program, it).is_some()) {
+        if missing == Mode::Reset && sets.iter().any(|it| InAction::of(cx.program, it).is_some()) {
             continue;
         }
         // A memory bit that nothing reads is O007's affair.

@@ -6,6 +6,9 @@ use super::chart::{Chart, Connector, Transition};
 use super::program::ProgramIndex;
 use crate::model::chart::ConnectorKind;
 
+/// Of more ends of a connector, or branches behind a step, than this only the first are looked at: no page has so many.
+const MOST: usize = 64;
+
 /// What is wrong. Steps, transitions and connectors are indices into the chart's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flaw {
@@ -66,6 +69,12 @@ pub fn misplaced(program: &ProgramIndex<'_>, chart: &Chart<'_>) -> Vec<Misplaced
             ConnectorKind::Destination => {}
         }
     }
+    // Whether one of the branches before a destination connector has its origin connector.
+    let met: Vec<bool> = chart
+        .connectors
+        .iter()
+        .map(|it| it.to.iter().any(|to| it.from.iter().any(|from| joined.contains_key(&(*from, *to)))))
+        .collect();
     // What destination connectors ask for.
     let mut asked: FxHashSet<(u32, u32)> = FxHashSet::default();
     for transition in &chart.transitions {
@@ -83,21 +92,23 @@ pub fn misplaced(program: &ProgramIndex<'_>, chart: &Chart<'_>) -> Vec<Misplaced
                     if pages.differ(chart.connectors[connector].unit, chart.steps[target as usize].unit) {
                         found.push(Misplaced { flaw: Flaw::Origin { target }, connector, step });
                     }
-                } else if it.from.iter().any(is_met) {
+                } else if met[at] {
                     // Without any origin connector, it is not paired at all: G005's affair.
                     found.push(Misplaced { flaw: Flaw::Missing { target }, connector: at, step });
                 }
             }
         }
     }
+    // Steps where a branch arrives that no destination connector asks for, with the first step that one comes from.
+    let mut wanting: FxHashMap<u32, u32> = FxHashMap::default();
+    for &(from, target) in joined.keys().filter(|it| !asked.contains(it)) {
+        wanting.entry(target).and_modify(|it| *it = from.min(*it)).or_insert(from);
+    }
     let leaving = leaving(chart);
     for connector in loose_destinations {
         let it = &chart.connectors[connector];
-        let wanting =
-            joined.keys().filter(|(from, target)| it.to.contains(target) && !asked.contains(&(*from, *target)));
-        // The order of a hash table means nothing.
-        let Some(&(step, _)) = wanting.min() else { continue };
-        let transitions = leaving.get(&step).map_or(&[][..], Vec::as_slice);
+        let Some(&step) = it.to.iter().find_map(|it| wanting.get(it)) else { continue };
+        let transitions = leaving.get(&step).map_or(&[][..], |it| &it[..it.len().min(MOST)]);
         let Some(&transition) = transitions.first() else { continue };
         if transitions.iter().all(|&at| pages.differ(it.unit, chart.transitions[at].unit)) {
             found.push(Misplaced { flaw: Flaw::Destination { transition }, connector, step });
@@ -108,7 +119,6 @@ pub fn misplaced(program: &ProgramIndex<'_>, chart: &Chart<'_>) -> Vec<Misplaced
 
 /// Pairs of steps that an origin connector joins; of one with many on both sides, which is none, the first.
 fn pairs(it: &Connector<'_>) -> impl Iterator<Item = (u32, u32)> {
-    const MOST: usize = 64;
     let to: Vec<u32> = it.to.iter().take(MOST).copied().collect();
     it.from.iter().take(MOST).flat_map(move |&from| to.clone().into_iter().map(move |to| (from, to)))
 }
@@ -141,7 +151,7 @@ fn sources_by_connector(chart: &Chart<'_>, pages: &Pages<'_, '_>) -> Vec<Misplac
                 Flaw::Convergence
             } else if transition.it.targets.len() > 1 && ends_here(transition) {
                 Flaw::Divergence
-            } else if let Some(&other) = behind.iter().find(|it| elsewhere(it)) {
+            } else if let Some(&other) = behind.iter().take(MOST).find(|it| elsewhere(it)) {
                 Flaw::Branch { other }
             } else {
                 continue;
