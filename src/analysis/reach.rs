@@ -87,9 +87,9 @@ pub struct Component {
 #[derive(Debug)]
 pub struct Part {
     pub component: Component,
-    /// From the initial situation.
+    /// From the initial situation, branches of one step apart.
     pub own: Reached,
-    /// From there, and from what the program sets.
+    /// From there and from what the program sets, as receptivities allow.
     pub all: Reached,
 }
 
@@ -348,9 +348,10 @@ impl<'p, 'a> Net<'p, 'a> {
         components
     }
 
-    /// What a component reaches from its initial situation.
+    /// What a component reaches from its initial situation when branches of one step are never taken together: that they
+    /// can be is a finding of its own, and what follows from it is none.
     pub fn reach(&self, component: &Component) -> Reached {
-        self.explore(component, &[component.initial.clone()])
+        self.explore(component, &[component.initial.clone()], true)
     }
 
     /// What it reaches from there and from what the program sets.
@@ -360,11 +361,11 @@ impl<'p, 'a> Net<'p, 'a> {
         };
         let presets = self.presets.iter().map(own).filter(|it| !it.is_empty());
         let starts: Vec<Vec<Node>> = [component.initial.clone()].into_iter().chain(presets).collect();
-        self.explore(component, &starts)
+        self.explore(component, &starts, false)
     }
 
-    fn explore(&self, component: &Component, starts: &[Vec<Node>]) -> Reached {
-        let walker = Walker::new(self, component);
+    fn explore(&self, component: &Component, starts: &[Vec<Node>], apart: bool) -> Reached {
+        let walker = Walker { apart, ..Walker::new(self, component) };
         let mut reached = Reached::default();
         let mut known: FxHashMap<Situation, u32> = FxHashMap::default();
         let mut lost: FxHashSet<(usize, Node)> = FxHashSet::default();
@@ -605,6 +606,8 @@ struct Walker<'n, 'p, 'a> {
     component: &'n Component,
     place: FxHashMap<Node, usize>,
     words: usize,
+    /// Branches of one step are not taken together.
+    apart: bool,
 }
 
 fn has(situation: &[u64], at: usize) -> bool {
@@ -618,7 +621,7 @@ fn as_index(at: usize) -> u32 {
 impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
     fn new(net: &'n Net<'p, 'a>, component: &'n Component) -> Self {
         let place = component.nodes.iter().enumerate().map(|(at, it)| (*it, at)).collect();
-        Self { net, component, place, words: component.nodes.len().div_ceil(64) }
+        Self { net, component, place, words: component.nodes.len().div_ceil(64), apart: false }
     }
 
     fn situation(&self, nodes: &[Node]) -> Situation {
@@ -729,7 +732,7 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
             [Vec::new()].into_iter().chain(singles).chain(pairs).collect()
         };
         let mut left_out = !is_small;
-        let mut sets = Vec::new();
+        let mut sets: Vec<Vec<usize>> = Vec::new();
         for set in candidates {
             let guards = cluster.iter().filter_map(|it| match self.net.crossings[*it].guard {
                 Guarded::By(guard) => Some((guard, set.contains(it))),
@@ -742,7 +745,28 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
                 Answer::Possible(_) => sets.push(set),
             }
         }
+        if self.apart {
+            sets = self.apart(sets);
+        }
         (sets, left_out)
+    }
+
+    /// Of sets that cross two branches of one step, what is left when one of them is taken.
+    fn apart(&self, sets: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+        let mut found: Vec<Vec<usize>> = Vec::new();
+        for set in sets {
+            let mut kept: Vec<usize> = Vec::new();
+            for it in set {
+                let from = &self.net.crossings[it].from;
+                if !kept.iter().any(|&it| self.net.crossings[it].from.iter().any(|it| from.contains(it))) {
+                    kept.push(it);
+                }
+            }
+            if !found.contains(&kept) {
+                found.push(kept);
+            }
+        }
+        found
     }
 
     /// The situation after some crossings (rules 3 to 5). Tells of each step that is activated while it stays active.

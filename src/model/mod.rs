@@ -15,5 +15,6 @@ pub mod pl7_precedence;
 pub mod pl7_tables;
 pub mod symbols;
 pub mod unit;
+pub mod work;
 
 pub use unit::UnitModel;
