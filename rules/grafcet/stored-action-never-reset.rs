@@ -3,7 +3,7 @@
 use crate::analysis::Site;
 use crate::analysis::drives::Hidden;
 use crate::analysis::processing::{InAction, is_stored, may_raise};
-use crate::analysis::program::{Context, GlobalUse, ObjectUses, ProgramIndex};
+use crate::analysis::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
@@ -56,7 +56,7 @@ impl<'a> Raised<'a> {
         for it in uses.with_mode(|it| it.writes() || matches!(it, Mode::Drive(_))) {
             let action = InAction::of(program, it);
             let stays = match it.mode {
-                Mode::Set => !it.it.own && (action.is_some() || it.it.conditional || is_in_event(program, it.unit)),
+                Mode::Set => !it.it.own && (action.is_some() || it.it.conditional || program.is_in_event(it.unit)),
                 Mode::Assign | Mode::AssignNot if it.it.constant.is_some() => may_raise(it),
                 // Its last value stays when the step is left.
                 Mode::Assign | Mode::AssignNot => {
@@ -77,10 +77,4 @@ impl<'a> Raised<'a> {
         // What one step computes may be what ends that which another began.
         (is_of_one_step || !is_computed).then_some(Self { first: first?, others })
     }
-}
-
-/// Whether the unit runs in events alone, each of which something raises.
-fn is_in_event(program: &ProgramIndex<'_>, unit: u32) -> bool {
-    let contexts = &program.contexts[unit as usize];
-    !contexts.is_empty() && contexts.iter().all(|it| matches!(it, Context::Event(_)))
 }

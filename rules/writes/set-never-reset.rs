@@ -3,7 +3,7 @@
 use crate::analysis::Site;
 use crate::analysis::drives::Hidden;
 use crate::analysis::processing::InAction;
-use crate::analysis::program::{Context, GlobalUse, ObjectUses};
+use crate::analysis::program::{GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Severity, Sink};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
@@ -32,7 +32,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let unread = class == Class::Memory && !is_read(cx, at, uses);
         let constant_one = missing == Mode::Reset
             && sets.iter().any(|it| {
-                it.it.own || cx.program.is_startup(it.unit) || !it.it.conditional && !is_in_event(cx, it.unit)
+                it.it.own || cx.program.is_startup(it.unit) || !it.it.conditional && !cx.program.is_in_event(it.unit)
             });
         let is_placed = cx.program.writes_indirectly(&uses.object.footprint.area);
         if unread || constant_one || is_placed || is_written_otherwise(cx, at, uses) || hidden.may_hold(class, missing)
@@ -62,12 +62,6 @@ fn one_sided<'p, 'a>(
         (true, false) => Some((Mode::Set, resets)),
         _ => None,
     }
-}
-
-/// Whether the unit runs in events alone, each of which something raises.
-fn is_in_event(cx: &ProgramCx<'_>, unit: u32) -> bool {
-    let contexts = &cx.program.contexts[unit as usize];
-    !contexts.is_empty() && contexts.iter().all(|it| matches!(it, Context::Event(_)))
 }
 
 fn is_read(cx: &ProgramCx<'_>, at: u32, uses: &ObjectUses<'_>) -> bool {

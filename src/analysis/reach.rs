@@ -351,7 +351,7 @@ impl<'p, 'a> Net<'p, 'a> {
     /// What a component reaches from its initial situation when branches of one step are never taken together: that they
     /// can be is a finding of its own, and what follows from it is none.
     pub fn reach(&self, component: &Component) -> Reached {
-        self.explore(component, &[component.initial.clone()], true)
+        self.explore(component, std::slice::from_ref(&component.initial), true)
     }
 
     /// What it reaches from there and from what the program sets.
