@@ -36,7 +36,7 @@ pub use power::{
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
 
-use super::{Counted, Limit, Numbered, Range};
+use super::{ChartBits, Counted, Limit, Numbered, Range};
 
 /// Watchdog of the master task, which is not periodic, in milliseconds (also PL72:534).
 pub const WATCHDOG_MS: Limit = Limit::new(150, "PL72:477");
@@ -76,6 +76,9 @@ pub const COLUMN_STEPS: Limit = Limit::new(6, "PL72:1342");
 pub const COLUMN_TRANSITIONS: Limit = Limit::new(6, "PL72:1343");
 pub const COLUMN_ORIGINS: Limit = Limit::new(1, "PL72:1344");
 pub const COLUMN_DESTINATIONS: Limit = Limit::new(1, "PL72:1345");
+/// What initialises, clears and prepositions or freezes charts. All are reset by the system.
+pub static CHART_BITS: ChartBits =
+    ChartBits { bits: Range::new(21, 23, "PL72:1824"), cleared: &[], only_set: Some("PL72:1824") };
 /// Lines of a page: those of its origin connectors, steps, transitions and destination connectors.
 pub const CHART_LINES: Limit = Limit::new(
     COLUMN_ORIGINS.value + COLUMN_STEPS.value + COLUMN_TRANSITIONS.value + COLUMN_DESTINATIONS.value,
