@@ -267,6 +267,15 @@ impl Target {
         }
     }
 
+    /// Values that the time of a step takes, and its unit in milliseconds.
+    pub const fn step_times(&self) -> Option<(Range, Limit)> {
+        match self.family {
+            Family::Pl7 => Some((pl7::STEP_TIMES, pl7::STEP_TIME_UNIT_MS)),
+            Family::Pl72 => Some((pl72::STEP_TIMES_S, pl72::STEP_TIME_UNIT_MS)),
+            Family::Step7 => None,
+        }
+    }
+
     /// What one event may exchange; `None` when the controller is unknown: the series count differently.
     pub fn exchanges(&self) -> Option<pl7::Exchanges> {
         self.processor().map(|it| it.exchanges)

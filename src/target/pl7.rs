@@ -43,6 +43,7 @@ pub const ANALOG_GROUP_PREMIUM: Limit = Limit::new(4, "PL7:2448");
 pub const UNSEEN_POWER_FAILURE_MS: (Limit, Limit) = (Limit::new(10, "PL7:1761"), Limit::new(1, "PL7:1761"));
 /// Times of steps, in units of 100 ms.
 pub const STEP_TIMES: Range = Range::new(0, 9999, "PL7:4248");
+pub const STEP_TIME_UNIT_MS: Limit = Limit::new(100, "PL7:4248");
 /// Only these system words can be a table.
 pub const SYSTEM_WORD_TABLE: Range = Range::new(50, 53, "PL7:1045");
 /// Transitions of a chart, of which at most 64 may close or open AND branches (PL7:4286).
