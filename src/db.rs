@@ -196,7 +196,7 @@ fn is_commented(root: syntax::SyntaxNode<'_>, model: &UnitModel) -> bool {
 /// Whether the unit is PL7 text that does not say what it is: a listing shown in a document, part of something unread.
 fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: syntax::SyntaxNode<'_>) -> bool {
     let file = unit.file(db);
-    matches!(file.detected(db), Detected::Pasted(_))
+    matches!(file.detected(db), Detected::Pasted(_) | Detected::Pl72)
         && *unit.entity(db) != Entity::Container
         && db.project().settings(db).entity_address(file.path(db)).is_none()
         && !root.children().any(|it| it.kind() == SyntaxKind::Heading)
@@ -300,7 +300,7 @@ fn folder_of(path: &str) -> &str {
 pub fn family(detected: Detected) -> Option<Family> {
     match detected {
         Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
-        Detected::Pl72 => Some(Family::Pl72),
+        Detected::Pl72 | Detected::Pl72Exchange => Some(Family::Pl72),
         Detected::Step7 => Some(Family::Step7),
         _ => None,
     }
@@ -657,7 +657,7 @@ pub struct Input {
 impl Input {
     /// Text that is already decoded, recognised by its path and content unless `dialect` says what it is.
     pub fn from_text(path: &str, text: &str, dialect: Dialect) -> Self {
-        let hint = FileHint { path: Some(Path::new(path)), explicit: true, dialect };
+        let hint = FileHint { path: Some(Path::new(path)), explicit: true, dialect, family: None };
         let detected = detect::detect(hint, text);
         let source =
             SourceText { text: text.into(), encoding: Encoding::Utf8, bom: false, malformed: false, mixed: false };
@@ -754,7 +754,7 @@ fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Fa
     let asks = |family: Family| active.iter().any(|it| it.by_controller && it.is_for_family(family));
     let is_named = |it: &Input| it.detected == Detected::Stx && stx::controller(&it.source.text).is_some();
     let is_read = |wanted: Family| inputs.iter().any(|it| family(it.detected) == Some(wanted) && !is_named(it));
-    let mut families = vec![Family::Pl7, Family::Step7];
+    let mut families = vec![Family::Pl7, Family::Pl72, Family::Step7];
     families.retain(|&it| settings.target(it).controller().is_none() && asks(it) && is_read(it));
     families
 }
@@ -782,6 +782,10 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
         (Detected::Stx, _) => "PL7 project, by its cross-reference".to_owned(),
+        (Detected::Pl72Exchange, _) => "PL7-2 exchange file".to_owned(),
+        (_, Some(Language::Pl72Ld)) => "PL7-2 ladder".to_owned(),
+        (_, Some(Language::Pl72Gr7)) => "PL7-2 Grafcet".to_owned(),
+        (_, Some(Language::Pl72Sfc)) => "PL7-2, textual SFC".to_owned(),
         (Detected::Pl72, _) => "PL7-2".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::German))) => "STEP 7 AWL, German mnemonics".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),

@@ -66,15 +66,42 @@ fn help_is_no_mistake() {
 fn what_is_not_read_is_named() {
     let rung = "RUNG\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
     let folder = folder(&[
-        ("press.txt", &format!("LD : PL7-2 - PRL\n{rung}LD : PL7-2 - POST\n{rung}")),
+        ("press.txt", "IL : PL7-2 - PRL\nLD I0,05\nIL : PL7-2 - POST\nLD I0,06\n"),
         ("mixed.txt", &format!("LD : PL7-2 - POST\n{rung}ST : MAST - MAIN\n! %M1 := %M2;\n")),
         ("plclint.toml", "[target]\ncontroller = 'TSX 17-20'"),
     ]);
     let ran = run(folder.path(), &["check", "--format", "concise"]);
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     let all = ran.out + &ran.err;
-    assert!(all.contains("press.txt: not read: PL7-2 ladder or Grafcet is not supported"), "{all}");
+    let form = "PL7-2 language other than ladder and Grafcet";
+    assert!(all.contains(&format!("press.txt: not read: {form} is not supported")), "{all}");
     assert!(!all.contains("mixed.txt: not read"), "{all}");
+}
+
+/// The configured controller says whose the ladder is, where nothing else does.
+#[test]
+fn ladder_of_a_configured_controller() {
+    let rung = |label: u32| format!("RUNG L{label}:\nOPEN_CONTACT(B1),H_LINK(8),COIL(B2);\nEND_RUNG\n");
+    let text = rung(1) + &rung(2);
+    let check = |controller: &str| {
+        let config = format!("[target]\ncontroller = '{controller}'");
+        let folder = folder(&[("press.txt", text.as_str()), ("plclint.toml", &config)]);
+        run(folder.path(), &["check", "--format", "concise"]).out
+    };
+    let out = check("TSX 17-20");
+    assert!(out.contains("W001") && !out.contains("L002"), "{out}");
+    let out = check("TSX 37-22");
+    assert!(out.contains("L002"), "ten columns are one too few in PL7: {out}");
+}
+
+/// `[[entity]]` says what a file without a heading is.
+#[test]
+fn a_module_of_pl7_2_by_the_configuration() {
+    let rung = "RUNG L1:\nOPEN_CONTACT(I0,05),H_LINK(8),SET_COIL(O0,03);\nEND_RUNG\n";
+    let config = "[[entity]]\npath = 'press.txt'\naddress = 'PL7-2 MAST'";
+    let folder = folder(&[("press.txt", rung), ("plclint.toml", config)]);
+    let out = run(folder.path(), &["check", "--format", "concise"]).out;
+    assert!(out.contains("W003"), "the program is complete: {out}");
 }
 
 #[test]

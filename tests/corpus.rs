@@ -52,7 +52,7 @@ fn relative(path: &Path) -> String {
 }
 
 fn load(path: &Path, dialect: Dialect) -> Input {
-    let hint = FileHint { path: Some(path), explicit: false, dialect };
+    let hint = FileHint { path: Some(path), explicit: false, dialect, family: None };
     let (source, detected) = detect::load(hint, &fs::read(path).expect("a file"), None);
     Input { path: relative(path), source, detected }
 }

@@ -12,7 +12,7 @@ use plclint::source::split::{self, SplitHint};
 use plclint::syntax;
 use proptest::prelude::*;
 
-const DIALECTS: [Dialect; 8] = [
+const DIALECTS: [Dialect; 9] = [
     Dialect::Auto,
     Dialect::Step7,
     Dialect::Pl7,
@@ -20,11 +20,12 @@ const DIALECTS: [Dialect; 8] = [
     Dialect::Pl7St,
     Dialect::Pl7Ld,
     Dialect::Pl7Gr7,
+    Dialect::Pl72,
     Dialect::Sfc,
 ];
 
 fn check(bytes: &[u8], dialect: Dialect, encoding: Option<Encoding>) -> Outcome {
-    let hint = FileHint { path: Some(Path::new("hostile.awl")), explicit: true, dialect };
+    let hint = FileHint { path: Some(Path::new("hostile.awl")), explicit: true, dialect, family: None };
     let (source, detected) = detect::load(hint, bytes, encoding);
     let spans = split::split(&source.text, detected, &SplitHint::default());
     let mut at = 0;
@@ -65,6 +66,12 @@ const SFC: &str = "INITIAL_STEP X0 : END_STEP\nSTEP X1 : Fill(N); %Q2.1(S); END_
 const LD: &str = "LD : MAST - SR3\nRUNG (*x*) %L3:\nOPEN_CONTACT(%I1.0),SHORT_CIRCUIT,BLOCK(%TM0),H_LINK(6),COIL(%Q2.0);\n\
                   P_CONTACT(%M1),H_LINK,EMPTY_CELL(9);\nCOMPARE %MW0>5 END_BLOCK,H_LINK(5),OPERATE %MW1:=%MW2[%MW3] END_BLOCK;\n\
                   EMPTY_LINE;\nEMPTY_CELL(2),V_LINK,BLOCK(%C8),H_LINK(4),JUMP_COIL(%L3);\nEND_RUNG\n";
+const PL7_2: &str = "LD : PL7-2 - PRL\nRUNG (*x*) L3:\nOPEN_CONTACT(I0,05),SHORT_CIRCUIT,BLOCK(T0),H_LINK(5),COIL(O1,3);\n\
+                     CLOSED_CONTACT(%B1),H_LINK,EMPTY_CELL(8);\nCOMPARE W0 > = H'5' END_BLOCK,H_LINK(5),OPERATE W5(W10) -> B0[8] \
+                     END_BLOCK;\nH_LINK(7),OPERATE SLC 3 W1 -> W2 END_BLOCK;\nEND_RUNG\nRUNG L4:\nOPEN_CONTACT(W5,A),\
+                     BLOCK(WEEK(W1,CW2)),H_LINK(6),JUMP_COIL(L3);\nEND_RUNG\nGR7 : PL7-2 - SEQ\nPAGE 0\nINITIAL_STEP 0 AT (C 0,L 1) :\n\
+                     ACTION (N1,LD) : RUNG L1:\nOPEN_CONTACT(X0),H_LINK(8),SAVE_COIL(B2);\nEND_RUNG END_ACTION\nEND_STEP\n\
+                     TRANSITION (LD) AT (C 0,L 2) : RUNG\nOPEN_CONTACT(I1,B),H_LINK(8);\nEND_RUNG END_TRANSITION\nEND_PAGE\n";
 
 fn mutated(base: &'static str) -> impl Strategy<Value = Vec<u8>> {
     let edits = prop::collection::vec((any::<prop::sample::Index>(), 0_usize..6, any::<u8>()), 1..12);
@@ -108,7 +115,7 @@ proptest! {
 
     #[test]
     fn mutated_code(
-        bytes in prop_oneof![mutated(AWL), mutated(ST), mutated(IL), mutated(LD), mutated(GR7), mutated(SFC)],
+        bytes in prop_oneof![mutated(AWL), mutated(ST), mutated(IL), mutated(LD), mutated(GR7), mutated(SFC), mutated(PL7_2)],
         dialect in prop::sample::select(&DIALECTS[..]),
         encoding in prop::sample::select(&[None, Some(Encoding::Windows1252), Some(Encoding::Utf8)][..]),
     ) {
@@ -129,6 +136,8 @@ fn deep_nesting_is_reported_and_survived() {
         "(*".repeat(100_000),
         format!("RUNG\nCOMPARE {}", "(".repeat(100_000)),
         format!("RUNG\n{}", "OPERATE ".repeat(100_000)),
+        format!("RUNG\nOPERATE {}", "SLC 3 - -> ".repeat(100_000)),
+        format!("RUNG\nBLOCK({}", "WEEK(".repeat(100_000)),
         format!("RUNG\n{}", "X(".repeat(100_000)),
         format!("RUNG\n{}COIL(%M0);END_RUNG", "OPEN_CONTACT(%M1),".repeat(20_000)),
         format!("DATA_BLOCK DB 1\n{}", "a : STRUCT\n".repeat(100_000)),
@@ -137,7 +146,8 @@ fn deep_nesting_is_reported_and_survived() {
         "STEP 1 : ACTION (N1,ST) : ".repeat(20_000),
         "T_S_OR_LINK FROM (C 1,L 1) TO (C 1,L 1) := [".repeat(20_000),
     ] {
-        for dialect in [Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St, Dialect::Pl7Ld, Dialect::Pl7Gr7] {
+        for dialect in [Dialect::Step7, Dialect::Pl7Il, Dialect::Pl7St, Dialect::Pl7Ld, Dialect::Pl7Gr7, Dialect::Pl72]
+        {
             check(text.as_bytes(), dialect, None);
         }
     }
@@ -172,6 +182,8 @@ fn lines_of_ten_megabytes() {
         ("%MW0 = = ( ", syntax::Language::Pl7St),
         ("RUNG COIL(%M0); ", syntax::Language::Pl7Ld),
         ("COMPARE ( ,; ", syntax::Language::Pl7Ld),
+        ("RUNG COIL(W5(W1)); ", syntax::Language::Pl72Ld),
+        ("OPERATE W1 + -> ", syntax::Language::Pl72Ld),
     ] {
         let text = line.repeat(10_000_000 / line.len());
         assert!(syntax::parse(language, &text).syntax().text() == text.as_str());
@@ -182,7 +194,7 @@ fn lines_of_ten_megabytes() {
 /// catches is quadratic growth, which shows as a factor of 16 and more.
 #[test]
 fn time_is_linear() {
-    let shapes: [(&str, Dialect); 18] = [
+    let shapes: [(&str, Dialect); 21] = [
         ("U(\nU E 0.0\n)\n= A 4.0\n", Dialect::Step7),
         ("U E 0.0\nO M 1.0\n", Dialect::Step7),
         ("L MW 2\nL 5\n+I\nT MW 4\n", Dialect::Step7),
@@ -202,11 +214,14 @@ fn time_is_linear() {
         ("OPEN_CONTACT(%M0),H_LINK(9),COIL(%M1);\n", Dialect::Pl7Ld),
         ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,CLOSED_CONTACT(%M1),H_LINK(7),COIL(%M2);\n", Dialect::Pl7Ld),
         ("OPEN_CONTACT(%M0),SHORT_CIRCUIT,V_LINK,", Dialect::Pl7Ld),
+        ("RUNG L1:\nOPEN_CONTACT(I0,05),H_LINK(6),OPERATE W5(W1) -> W#(W1) END_BLOCK;\nEND_RUNG\n", Dialect::Pl72),
+        ("OPEN_CONTACT(B0),SHORT_CIRCUIT,CLOSED_CONTACT(B1),H_LINK(6),COIL(B2);\n", Dialect::Pl72),
+        ("OPEN_CONTACT(B0),SHORT_CIRCUIT,V_LINK,", Dialect::Pl72),
     ];
     for (shape, dialect) in shapes {
         let time = |count: usize| {
             // `#` is the number of the repetition. What is no rung of its own is read as one.
-            let is_rung = dialect == Dialect::Pl7Ld && !shape.starts_with("RUNG");
+            let is_rung = matches!(dialect, Dialect::Pl7Ld | Dialect::Pl72) && !shape.starts_with("RUNG");
             let repeated: String = (0..count).map(|it| shape.replace('#', &it.to_string())).collect();
             let text = format!("{}{repeated}", if is_rung { "RUNG\n" } else { "" });
             let mut best = Duration::MAX;

@@ -163,7 +163,7 @@ fn the_controller_of_a_project() {
 }
 
 fn check(path: &str, bytes: &[u8]) -> Outcome {
-    let hint = FileHint { path: Some(Path::new(path)), explicit: true, dialect: Dialect::Auto };
+    let hint = FileHint { path: Some(Path::new(path)), explicit: true, dialect: Dialect::Auto, family: None };
     let (source, detected) = detect::load(hint, bytes, None);
     let overrides = Overrides { select: Some(vec!["all".to_owned()]), ..Overrides::default() };
     let settings = Settings::without_file(Folders::default(), overrides).expect("`all` is a selection");

@@ -4,6 +4,8 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::chart::{Piece, place};
+use crate::model::ladder::Flaw;
+use crate::model::unit::OddityKind;
 use crate::syntax::AstNode as _;
 use crate::syntax::pl7::ast::{IlInstr, Root, Sentence, Stmt};
 use crate::syntax::pl7::chart::ast::Transition;
@@ -14,6 +16,16 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let is_receptivity = place(&cx.model.entity).is_some_and(|it| matches!(it.what, Piece::Receptivity { .. }));
     if is_receptivity && let Some(root) = Root::cast(cx.parse.syntax()) {
         root.sentences().for_each(|it| sentence(it, sink));
+    }
+    if cx.model.language.is_pl7_2() {
+        for oddity in &cx.model.oddities {
+            let what = match oddity.kind {
+                OddityKind::Ladder(Flaw::CoilInTransition) => "a coil",
+                OddityKind::Ladder(Flaw::ElementInTransition) => "an action",
+                _ => continue,
+            };
+            sink.report(oddity.range, format!("{what} stands in a receptivity, which tests only"));
+        }
     }
     for node in cx.nodes(SyntaxKind::Transition) {
         let sentences = Transition::cast(node).into_iter().flat_map(Transition::sentences);

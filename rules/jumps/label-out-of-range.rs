@@ -11,7 +11,9 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             // A number too long for its type is out of any range.
             let number = label.name.parse::<u32>().unwrap_or(u32::MAX);
             if !range.contains(number) {
-                let message = format!("label `{text}` is out of range: %L{} to %L{}", range.first, range.last);
+                let sign = if cx.model.language.is_pl7_2() { "" } else { "%" };
+                let message =
+                    format!("label `{text}` is out of range: {sign}L{} to {sign}L{}", range.first, range.last);
                 sink.report(label.range, message).note(format!("the range is given in {}", range.source));
             }
         }

@@ -9,6 +9,7 @@ use crate::target::pl7::{
     DFB_ITEM_COMMENT_LENGTH, IL_COMMENT_LENGTH, RUNG_COMMENT_LENGTH, SECTION_COMMENT_LENGTH, ST_COMMENT_LENGTH,
     SYMBOL_COMMENT_LENGTH,
 };
+use crate::target::pl72::COMMENT_LENGTH;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for remark in &cx.model.remarks {
@@ -16,6 +17,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             RemarkKind::Symbol => (SYMBOL_COMMENT_LENGTH, "symbol"),
             RemarkKind::Module => (SECTION_COMMENT_LENGTH, "section or subroutine"),
             RemarkKind::Item => (DFB_ITEM_COMMENT_LENGTH, "parameter or variable of a DFB"),
+            RemarkKind::Network => (COMMENT_LENGTH, "network"),
         };
         if remark.characters > limit.value {
             let message =

@@ -12,13 +12,16 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !program.complete {
         return;
     }
+    let configured = Configured::new(cx);
     // A place computed at run time, or a symbol that nothing resolves, may be the missing use.
     if !program.has_unresolved(Mode::writes) {
         let given = bytes_given(cx);
         let mut unwritten = one_sided(cx, |it| it.is_read(), |it| it.is_written());
         unwritten.retain(|&it| {
             let uses = &program.objects[it as usize];
-            !program.writes_indirectly(&uses.object.footprint.area) && !given.iter().any(|byte| covers(*byte, uses))
+            !program.writes_indirectly(&uses.object.footprint.area)
+                && !configured.writes(uses)
+                && !given.iter().any(|byte| covers(*byte, uses))
         });
         for group in unwritten.chunk_by(|&a, &b| same_byte(cx, a, b)) {
             let others = if program.family == Family::Step7 {
@@ -32,13 +35,44 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !program.has_unresolved(Mode::reads) {
         // An output that nobody wants has to go somewhere: what only takes such outputs is a waste basket.
         let is_given = |it: &ObjectUses<'_>| it.with_mode(|it| it.writes() && it != Mode::Output).next().is_some();
-        let mut unread = one_sided(cx, is_given, |it| it.is_read());
+        let mut unread = one_sided(cx, is_given, |it| it.is_read() || configured.reads(it));
         unread.retain(|&it| !program.reads_indirectly(&program.objects[it as usize].object.footprint.area));
         for group in unread.chunk_by(|&a, &b| same_byte(cx, a, b)) {
             report(cx, group, "written", "read", sink)
                 .severity(Severity::Advice)
                 .note("this assumes that no operator panel or other station reads it");
         }
+    }
+}
+
+/// What blocks do with memory that their configuration names and the program does not: a drum writes its order bits
+/// (PL72:895), a text block of PL7-2 receives into one table of words and sends another (PL72:1186-1188).
+struct Configured {
+    drum: bool,
+    text: bool,
+}
+
+impl Configured {
+    fn new(cx: &ProgramCx<'_>) -> Self {
+        let has = |symbols: &[&str]| {
+            cx.program.objects.iter().any(|it| match it.object.footprint.area {
+                Area::Block(symbol, _) => symbols.contains(&symbol),
+                _ => false,
+            })
+        };
+        Self { drum: has(&["DR", "D"]), text: has(&["TXT"]) }
+    }
+
+    fn writes(&self, it: &ObjectUses<'_>) -> bool {
+        match it.object.footprint.area {
+            Area::Bits => self.drum,
+            Area::Words => self.text,
+            _ => false,
+        }
+    }
+
+    fn reads(&self, it: &ObjectUses<'_>) -> bool {
+        self.text && it.object.footprint.area == Area::Words
     }
 }
 

@@ -10,12 +10,21 @@ use crate::syntax::Language;
 /// `%S0` cold start, `%S1` warm start, `%S13` first cycle; `%SW10` cold start of each task.
 const START_BITS: [u32; 3] = [0, 1, 13];
 const START_WORD: u32 = 10;
+/// `SY00` cold start, `SY01` warm start; `SY09`, which the program sets, resets the outputs (PL72:1886-1888).
+const START_BITS_PL7_2: [u32; 3] = [0, 1, 9];
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
     // Whether the cross-reference of a project lists system bits is not known.
     let is_project = program.units.iter().any(|it| it.language == Language::Pl7Xref);
-    if program.family != Family::Pl7 || is_project || !program.complete || program.objects.iter().any(asks) {
+    let (asks, note): (fn(&ObjectUses<'_>) -> bool, _) = match program.family {
+        Family::Pl7 => {
+            (asks, "`%S0` tells a cold start, `%S1` a warm one, `%SW10:X0` the first cycle after a cold start")
+        }
+        Family::Pl72 => (asks_pl7_2, "`SY00` tells a cold start, `SY01` a warm one; `SY09` resets the outputs"),
+        Family::Step7 => return,
+    };
+    if is_project || !program.complete || program.objects.iter().any(asks) {
         return;
     }
     let outputs = program.objects.iter().filter(|it| it.object.class == Class::Output);
@@ -26,8 +35,14 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if let (Some(main), Some(&output)) = (main, writes.first()) {
         sink.report(ProgramIndex::heading(main), "the program drives outputs, and never asks how it was started")
             .related(output, "an output is driven here")
-            .note("`%S0` tells a cold start, `%S1` a warm one, `%SW10:X0` the first cycle after a cold start");
+            .note(note);
     }
+}
+
+fn asks_pl7_2(it: &ObjectUses<'_>) -> bool {
+    let place = &it.object.footprint;
+    let bit = START_BITS_PL7_2.iter().find(|bit| place.start <= **bit && **bit < place.end());
+    place.area == Area::SystemBits && bit.is_some_and(|&bit| it.is_read() || bit == 9)
 }
 
 fn asks(it: &ObjectUses<'_>) -> bool {

@@ -4,7 +4,8 @@ use crate::analysis::Site;
 use crate::analysis::drives;
 use crate::analysis::program::{GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Severity, Sink};
-use crate::model::object::{Area, Class, Object, pl7};
+use crate::model::entity::Family;
+use crate::model::object::{Area, Class, Object, pl7, pl72};
 use crate::model::unit::{Mode, Pin};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
@@ -29,11 +30,14 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             it.it.parameter.is_some() || matches!(it.mode, Mode::InOut | Mode::Output | Mode::Drive(Pin::Whole))
         };
         let is_open = uses.iter().any(is_open);
-        let holds = matches!(items[0].object.footprint.area, Area::Block("R" | "DR", _));
+        let area = &items[0].object.footprint.area;
+        let holds = matches!(area, Area::Block("R" | "DR" | "D", _));
         let drive = uses.iter().find(|it| is_drive(it.mode, holds));
-        let read = items.iter().filter(|it| is_result(it.object)).find_map(|it| it.with_mode(Mode::reads).next());
-        let text = &items[0].object.text;
-        let name = text.split('.').next().unwrap_or(text);
+        let read = items
+            .iter()
+            .filter(|it| is_result(it.object, program.family))
+            .find_map(|it| it.with_mode(Mode::reads).next());
+        let name = items[0].object.text.split(['.', ',']).next().unwrap_or_default();
         match (drive, read) {
             _ if is_open => {}
             (None, Some(read)) if writes => {
@@ -41,8 +45,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 sink.report(read.site(), format!("`{name}` is read, and nothing {kind}"))
                     .related_all(resets.map(|it| (it.site(), "only this is done with it".to_owned())));
             }
-            // The outputs of a drum are set when the application is configured.
-            (Some(drive), None) if reads && !matches!(items[0].object.footprint.area, Area::Block("DR", _)) => {
+            // The outputs of a drum are set when the application is configured, and a text block sends.
+            (Some(drive), None) if reads && !matches!(area, Area::Block("DR" | "D" | "TXT", _)) => {
                 sink.report(drive.site(), format!("`{name}` is driven, and nothing reads it"))
                     .severity(Severity::Advice)
                     .note("this assumes that no operator panel or other station reads it");
@@ -55,10 +59,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// What makes a block run, in the words of a message.
 fn kind(object: &Object) -> Option<&'static str> {
     Some(match &object.footprint.area {
-        Area::Timers | Area::Block("TM" | "T" | "MN", _) => "starts it",
+        Area::Timers | Area::Block("TM" | "T" | "MN" | "M" | "TXT", _) => "starts it",
         Area::Counters | Area::Block("C", _) => "makes it count",
         Area::Block("R", _) => "stores a value in it",
-        Area::Block("DR", _) => "makes it advance",
+        Area::Block("DR" | "D", _) => "makes it advance",
         _ => return None,
     })
 }
@@ -73,7 +77,10 @@ fn is_drive(mode: Mode, holds: bool) -> bool {
 }
 
 /// Whether what is read of an object comes out of the block, and was not put into it.
-fn is_result(object: &Object) -> bool {
-    matches!(object.class, Class::Timer | Class::Counter | Class::BlockBit | Class::BlockWord)
-        && !pl7::is_preset(object)
+fn is_result(object: &Object, family: Family) -> bool {
+    let is_preset = match family {
+        Family::Pl72 => pl72::is_preset(object),
+        _ => pl7::is_preset(object),
+    };
+    matches!(object.class, Class::Timer | Class::Counter | Class::BlockBit | Class::BlockWord) && !is_preset
 }

@@ -5,17 +5,25 @@ use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Family;
 use crate::model::object::Area;
 
-/// `%S18` says that an operation overflowed, or divided by zero.
+/// `%S18` says that an operation overflowed, or divided by zero; so do `SY18` and, without signs, `SY17` (PL72:1031-1034).
 const OVERFLOW: u32 = 18;
+const OVERFLOW_UNSIGNED: u32 = 17;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    if program.family != Family::Pl7 || !program.complete {
+    let (first_bit, note) = match program.family {
+        Family::Pl7 => (OVERFLOW, "`%S18` says so, and stays until the program resets it"),
+        Family::Pl72 => {
+            (OVERFLOW_UNSIGNED, "`SY18` says so, of numbers without a sign `SY17`; the program resets them")
+        }
+        Family::Step7 => return,
+    };
+    if !program.complete {
         return;
     }
     let is_asked = program.objects.iter().any(|it| {
         let place = &it.object.footprint;
-        let covers = it.object.indexed || (place.start <= OVERFLOW && OVERFLOW < place.end());
+        let covers = it.object.indexed || (place.start <= OVERFLOW && first_bit < place.end());
         place.area == Area::SystemBits && covers && it.is_read()
     });
     let mut computing: Vec<Site> =
@@ -23,7 +31,5 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     computing.sort_by_key(|it| (program.order[it.unit as usize], it.anchor));
     let Some((&first, others)) = computing.split_first().filter(|_| !is_asked) else { return };
     let more = others.iter().map(|it| (*it, format!("{} computes, too", program.entity(it.unit))));
-    sink.report(first, "the program computes, and never asks whether a result overflowed")
-        .related_all(more)
-        .note("`%S18` says so, and stays until the program resets it");
+    sink.report(first, "the program computes, and never asks whether a result overflowed").related_all(more).note(note);
 }

@@ -7,7 +7,7 @@ use crate::lint::{Sink, UnitCx};
 use crate::model::entity::Family;
 use crate::model::expr::Expr;
 use crate::model::literal;
-use crate::model::object::{Class, Object, pl7};
+use crate::model::object::{Class, Object, pl7, pl72};
 use crate::model::unit::{Pin, StatementKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
@@ -32,10 +32,14 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 
 /// `%TM0.P := 10000`.
 fn stored(cx: &UnitCx<'_>, object: &Object, value: i64) -> Option<String> {
-    if !pl7::is_preset(object) {
+    let (family, is_preset) = match cx.model.language.is_pl7_2() {
+        true => (Family::Pl72, pl72::is_preset(object)),
+        false => (Family::Pl7, pl7::is_preset(object)),
+    };
+    if !is_preset {
         return None;
     }
-    let (what, _) = counts::number(Family::Pl7, object)?;
+    let (what, _) = counts::number(family, object)?;
     let range = cx.target.preset(what)?;
     let fits = u32::try_from(value).is_ok_and(|it| range.contains(it));
     let message = || format!("`{}` takes {value}, and a preset is {} to {}", object.text, range.first, range.last);

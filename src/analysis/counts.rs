@@ -7,12 +7,13 @@ use super::{Site, drives};
 use crate::model::entity::Family;
 use crate::model::object::{Area, Class, Object, pl7};
 use crate::target::pl7::BLOCK_COUNTS;
+use crate::target::pl72;
 use crate::target::{Count, Counted, CountedBy, Target};
 
 /// The object as written; of an item, its block: `%TM64` for `%TM64.Q`.
 pub fn name(object: &Object) -> &str {
     match object.class {
-        Class::BlockBit | Class::BlockWord => object.text.split('.').next().unwrap_or_default(),
+        Class::BlockBit | Class::BlockWord => object.text.split(['.', ',']).next().unwrap_or_default(),
         _ => &object.text,
     }
 }
@@ -38,6 +39,12 @@ pub fn number(family: Family, object: &Object) -> Option<(Counted, u32)> {
         (Family::Pl7, Area::Block(symbol, number)) => {
             (BLOCK_COUNTS.iter().find(|it| it.symbol == *symbol)?.what, *number)
         }
+        (Family::Pl72, Area::Bits) => (Counted::Bits, last),
+        (Family::Pl72, Area::Words) => (Counted::Words, last / 16),
+        (Family::Pl72, Area::Constants) => (Counted::Constants, last / 16),
+        (Family::Pl72, Area::SystemBits) => (Counted::SystemBits, last),
+        (Family::Pl72, Area::SystemWords) => (Counted::SystemWords, last / 16),
+        (Family::Pl72, Area::Block(symbol, number)) => (pl72::block_of_symbol(symbol)?, *number),
         (Family::Step7, Area::Words) => (Counted::Bytes, last / 8),
         (Family::Step7, Area::Timers) => (Counted::Timers, last),
         (Family::Step7, Area::Counters) => (Counted::Counters, last),

@@ -8,6 +8,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::chart::ChartFacts;
+use super::cost::UnitCost;
 use super::{conditions, gaps};
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
@@ -152,6 +153,8 @@ pub struct UnitFacts {
     pub condition: Option<u32>,
     /// Whether a comment stands in the unit. Of the text around programs, whether one is said to be that of a program.
     pub commented: bool,
+    /// Of a unit of PL7-2.
+    pub cost: Option<Box<UnitCost>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -275,6 +278,7 @@ impl UnitFacts {
             interface: model.interface.clone(),
             condition: None,
             commented: false,
+            cost: UnitCost::new(model),
         }
     }
 

@@ -6,14 +6,18 @@ pub mod calls;
 pub mod channels;
 pub mod chart;
 pub mod conditions;
+pub mod cost;
 pub mod counts;
 pub mod drives;
 pub mod edges;
 pub mod facts;
+pub mod features;
 pub mod gaps;
+pub mod known;
 pub mod program;
 pub mod reach;
 pub mod satisfy;
+pub mod size;
 pub mod symbols;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.

@@ -64,10 +64,15 @@ fn read_file(it: &Candidate, settings: &Settings, dialect: Dialect) -> Result<In
 }
 
 fn input(path: String, bytes: &[u8], explicit: bool, settings: &Settings, dialect: Dialect) -> Result<Input, Unread> {
-    let hint = FileHint { path: Some(Path::new(&path)), explicit, dialect };
+    let hint = FileHint { path: Some(Path::new(&path)), explicit, dialect, family: settings.controller_family() };
     let (source, detected) = load(hint, bytes, settings.encoding());
     let reason = match detected {
-        Detected::Exchange | Detected::Pasted(_) | Detected::Pl72 | Detected::Step7 | Detected::Stx => {
+        Detected::Exchange
+        | Detected::Pasted(_)
+        | Detected::Pl72
+        | Detected::Pl72Exchange
+        | Detected::Step7
+        | Detected::Stx => {
             return Ok(Input { path, source, detected });
         }
         Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),

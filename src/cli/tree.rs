@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let path = &arguments.path;
     let bytes =
         fs::read(path).map_err(|it| Failure::Usage(format!("{}: the file cannot be read: {it}", path.display())))?;
-    let hint = FileHint { path: Some(path), explicit: true, dialect: arguments.dialect };
+    let hint = FileHint { path: Some(path), explicit: true, dialect: arguments.dialect, family: None };
     let (source, detected) = load(hint, &bytes, arguments.encoding.flatten());
     print(|out| {
         for unit in split(&source.text, detected, &SplitHint::default()) {

@@ -75,6 +75,7 @@ impl Rule {
 
     /// Whether units of a language are among what the rule looks at.
     pub fn is_for(&self, language: Language) -> bool {
+        let is_pl7_chart = language.is_chart() && !language.is_pl7_2();
         self.dialects.iter().any(|dialect| match *dialect {
             "all" => true,
             "pl7" => matches!(
@@ -88,10 +89,11 @@ impl Rule {
                     | Language::Pl7Xref
             ),
             // The actions and receptivities of a chart are in any of the languages.
-            "ld" => language == Language::Pl7Ld || language.is_chart(),
-            "il" => language == Language::Pl7Il || language.is_chart(),
-            "st" => language == Language::Pl7St || language.is_chart(),
-            "g7" => language.is_chart(),
+            "ld" => language == Language::Pl7Ld || is_pl7_chart,
+            "il" => language == Language::Pl7Il || is_pl7_chart,
+            "st" => language == Language::Pl7St || is_pl7_chart,
+            "g7" => is_pl7_chart,
+            "pl72" => language.is_pl7_2(),
             "s7" => matches!(language, Language::Awl(_)),
             _ => false,
         })

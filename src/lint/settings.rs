@@ -23,6 +23,7 @@ use crate::source::decode::Encoding;
 use crate::source::entity_from_address;
 use crate::source::walk::WalkOptions;
 use crate::target::pl7::MODULE_CHANNELS;
+use crate::target::pl72::Series;
 use crate::target::{Counted, CountedBy, Target};
 
 /// Name of the configuration file.
@@ -124,12 +125,18 @@ struct File {
 
 /// The controller that programs are for.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 struct TargetConfig {
     /// `TSX 37-22`, `CPU 314`.
     controller: Option<Spanned<String>>,
     /// `V3`, where the documents distinguish versions.
     version: Option<Spanned<String>>,
+    /// Of a TSX 17-20: `I0,00` commands it to run and to stop.
+    run_stop_input: Option<Spanned<bool>>,
+    /// Of a TSX 17-20: `O0,00` tells that it runs.
+    security_output: Option<Spanned<bool>>,
+    /// Bytes of memory that a PL7-2 program may take.
+    program_memory: Option<Spanned<u32>>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -188,7 +195,7 @@ impl TryFrom<String> for Milliseconds {
     }
 }
 
-/// One channel of a module or several: `%I1.0`, `%Q4.0:8`, `%IW3.0`.
+/// One channel of a module or several: `%I1.0`, `%Q4.0:8`, `%IW3.0`; of PL7-2 `I0,05`, `O0,00[8]`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Channels(pub Object);
@@ -197,7 +204,14 @@ impl TryFrom<String> for Channels {
     type Error = String;
 
     fn try_from(text: String) -> Result<Self, String> {
-        match object::pl7::parse(text.trim()) {
+        let text = text.trim();
+        if let Ok(it) = object::pl72::parse(text)
+            && matches!(it.object.class, Class::Input | Class::Output)
+            && it.index.is_none()
+        {
+            return Ok(Self(it.object));
+        }
+        match object::pl7::parse(text) {
             Ok(it) if matches!(it.class, Class::Input | Class::Output) => Ok(Self(it)),
             Ok(_) => Err(format!("`{text}` is no input or output, such as `%I1.0`")),
             Err(error) => Err(format!("`{text}` is no input or output: {}", error.message)),
@@ -446,6 +460,7 @@ impl Settings {
             controller(name).map_err(|message| ConfigError { origin: Origin::Option("--target"), message })?;
         }
         counts(&text, &file, &overrides)?;
+        of_pl7_2(&text, &file.target)?;
         if let (Some(controller), Some(version)) = (&file.target.controller, &file.target.version) {
             let target = controller.get_ref().parse::<crate::target::Target>();
             if let Some(Err(error)) = target.ok().map(|it| it.with_version(Some(version.get_ref()))) {
@@ -532,6 +547,11 @@ impl Settings {
         self.0.overrides.controller.as_deref().or(file)
     }
 
+    /// The family of the configured controller.
+    pub fn controller_family(&self) -> Option<Family> {
+        self.controller()?.parse::<Target>().ok().map(|it| it.family())
+    }
+
     /// Whether the command line names another controller than the file, which then says nothing of it.
     fn is_another_controller(&self) -> bool {
         let parse = |it: &str| it.parse::<Target>().ok();
@@ -546,6 +566,26 @@ impl Settings {
     pub fn version(&self) -> Option<&str> {
         let version = self.0.file.target.version.as_ref().filter(|_| !self.is_another_controller())?;
         Some(version.get_ref().as_str())
+    }
+
+    /// Whether the input `I0,00` of a TSX 17-20 commands it to run and to stop.
+    pub fn run_stop_input(&self) -> bool {
+        self.of_own_controller(self.0.file.target.run_stop_input.as_ref()).unwrap_or_default()
+    }
+
+    /// Whether the output `O0,00` of a TSX 17-20 tells that it runs.
+    pub fn security_output(&self) -> bool {
+        self.of_own_controller(self.0.file.target.security_output.as_ref()).unwrap_or_default()
+    }
+
+    /// Bytes of memory that a PL7-2 program may take.
+    pub fn program_memory(&self) -> Option<u32> {
+        self.of_own_controller(self.0.file.target.program_memory.as_ref())
+    }
+
+    /// What the file says of its controller; none when the command line names another one.
+    fn of_own_controller<T: Copy>(&self, value: Option<&Spanned<T>>) -> Option<T> {
+        value.filter(|_| !self.is_another_controller()).map(|it| *it.get_ref())
     }
 
     /// Configured number of objects of a family, by its mnemonic: `M`, `MW`; none when the command line names another
@@ -733,6 +773,30 @@ fn controller(name: &str) -> Result<(), String> {
     name.parse::<Target>().map(drop).map_err(|it| it.to_string())
 }
 
+/// Judges the keys that only controllers of PL7-2 have by the controller that they are written for.
+fn of_pl7_2(text: &Text<'_>, file: &TargetConfig) -> Result<(), ConfigError> {
+    if let Some(bytes) = file.program_memory.as_ref().filter(|it| *it.get_ref() == 0) {
+        return Err(text.error(Some(bytes.span()), "`program-memory` is a number of bytes, such as `24576`"));
+    }
+    let Some(target) = file.controller.as_ref().and_then(|it| it.get_ref().parse::<Target>().ok()) else {
+        return Ok(());
+    };
+    let name = target.controller().unwrap_or("controller of a series");
+    let controller = target.pl72().and_then(|it| it.controller);
+    let channels = [("run-stop-input", &file.run_stop_input), ("security-output", &file.security_output)];
+    for (key, value) in channels {
+        if let Some(value) = value.as_ref().filter(|_| controller.is_none_or(|it| it.series != Series::Tsx17)) {
+            let message = format!("only a TSX 17-20 has `{key}` (PL72:148-152), and the controller is a {name}");
+            return Err(text.error(Some(value.span()), message));
+        }
+    }
+    if let Some(value) = file.program_memory.as_ref().filter(|_| controller.is_none()) {
+        let message = format!("`program-memory` is of the controllers of PL7-2, and the controller is a {name}");
+        return Err(text.error(Some(value.span()), message));
+    }
+    Ok(())
+}
+
 /// Judges `[objects]` by the controller that it is written for, or by every one when none is named.
 fn counts(text: &Text<'_>, file: &File, overrides: &Overrides) -> Result<(), ConfigError> {
     let named = file.target.controller.as_ref().map(|it| it.get_ref()).or(overrides.controller.as_ref());
@@ -900,6 +964,21 @@ mod tests {
     }
 
     #[test]
+    fn configuration_of_pl7_2_controllers() {
+        let text = "[target]\ncontroller = 'TSX 17-20'\nrun-stop-input = true\nprogram-memory = 24576\n[[task]]\n\
+                    name = 'FAST'\nio = ['I0,00[8]', 'O0,08[8]', 'O0,00']";
+        let settings = parse(text).unwrap();
+        assert_eq!((settings.run_stop_input(), settings.security_output()), (true, false));
+        assert_eq!(settings.program_memory(), Some(24_576));
+        let output = |text: &str| object::pl72::parse(text).unwrap().object;
+        assert_eq!(settings.task_of(&output("O0,15")), Some(Context::Fast));
+        assert_eq!(settings.task_of(&output("O0,07")), Some(Context::Cyclic));
+        let other = Overrides { controller: Some("TSX 27".into()), ..Overrides::default() };
+        let settings = parse_with(text, other).unwrap();
+        assert_eq!((settings.run_stop_input(), settings.program_memory()), (false, None));
+    }
+
+    #[test]
     fn errors_say_where() {
         let error = |text: &str| parse(text).unwrap_err().to_string();
         assert_eq!(
@@ -922,6 +1001,14 @@ mod tests {
         assert!(error("[target]\ncontroller = 'TSX 99'").starts_with("plclint.toml:2:14: unknown controller"));
         let message = error("[target]\ncontroller = 'TSX 27'\nversion = 'new'");
         assert!(message.starts_with("plclint.toml:3:11: unknown version"), "{message}");
+        assert_eq!(
+            error("[target]\ncontroller = 'TSX 27'\nrun-stop-input = true"),
+            "plclint.toml:3:18: only a TSX 17-20 has `run-stop-input` (PL72:148-152), and the controller is a TSX 27"
+        );
+        let message = error("[target]\ncontroller = 'TSX 37-22'\nprogram-memory = 8192");
+        assert!(message.starts_with("plclint.toml:3:18: `program-memory` is of the controllers of PL7-2"), "{message}");
+        assert!(error("[target]\nprogram-memory = 0").starts_with("plclint.toml:2:18: "));
+        assert!(error("[target]\nsecurity-output = 'yes'").starts_with("plclint.toml:2:19: "));
         assert!(error("[files]\nencoding = 'windows-1225'").starts_with("plclint.toml:2:12: unknown encoding"));
         assert!(error("[files]\nexclude = ['a{']").starts_with("plclint.toml:2:12: "));
         assert!(error("x = ").starts_with("plclint.toml:1:5: "), "{}", error("x = "));

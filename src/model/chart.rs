@@ -462,7 +462,10 @@ pub fn place(entity: &Entity) -> Option<Place> {
         page = words.next().and_then(|it| it.parse().ok());
     }
     let step = |text: &str| StepName::parse(&text.replace(['(', ')'], ""));
+    // A step of PL7-2 has one action, which runs while it is active (PL72:1421-1436).
+    let is_pl7_2 = first == "SEQ";
     let what = match (words.next(), words.next(), words.next()) {
+        (Some(at), None, None) if is_pl7_2 => Piece::Action { step: step(at)?, kind: ActionKind::Continuous },
         (Some(from), Some("-->" | "->"), Some(to)) => Piece::Receptivity { from: step(from)?, to: step(to)? },
         (Some(at), Some(kind), None) => Piece::Action { step: step(at)?, kind: ActionKind::of(kind)? },
         _ => Piece::Chart,
@@ -511,5 +514,11 @@ mod tests {
         let receptivity = Piece::Receptivity { from: StepName::Number(0), to: StepName::Number(1) };
         assert_eq!(what("MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)"), Some(receptivity));
         assert_eq!(what("MAST - Peinture - PRL"), None);
+        let action = Piece::Action { step: StepName::Number(3), kind: ActionKind::Continuous };
+        assert_eq!(what("PL7-2 - SEQ - X3"), Some(action));
+        let receptivity = Piece::Receptivity { from: StepName::Number(3), to: StepName::Number(4) };
+        assert_eq!(what("PL7-2 - SEQ - X3 --> X4"), Some(receptivity));
+        assert_eq!(place("PL7-2 - SEQ"), chart(Graph::Main, None));
+        assert_eq!(place("PL7-2 - SEQ - PAGE 3"), chart(Graph::Main, Some(3)));
     }
 }

@@ -11,8 +11,130 @@ use rustc_hash::FxHashSet;
 
 use crate::syntax::pl7::ast::{Cell, Expr, Rung};
 use crate::syntax::pl7::ladder_words::Element;
-use crate::syntax::{AstNode as _, SyntaxKind};
-use crate::target::pl7::{self, block};
+use crate::syntax::{AstNode as _, Language, SyntaxKind};
+use crate::target::{pl7, pl72};
+
+/// Whose rungs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    Pl7,
+    Pl72,
+}
+
+impl Layout {
+    /// Of the rungs of a unit, or of the actions and receptivities in it.
+    pub fn of(language: Language) -> Self {
+        if language.is_pl7_2() { Self::Pl72 } else { Self::Pl7 }
+    }
+
+    /// Columns, that of the actions included.
+    pub fn columns(self) -> u32 {
+        match self {
+            Self::Pl7 => pl7::LADDER_COLUMNS.value,
+            Self::Pl72 => pl72::LADDER_COLUMNS.value,
+        }
+    }
+
+    /// Lines of the controller that has the most.
+    fn lines(self) -> u32 {
+        match self {
+            Self::Pl7 => pl7::Series::Premium.ladder_lines().value,
+            Self::Pl72 => pl72::LADDER_LINES.value,
+        }
+    }
+
+    /// Cells that one word makes are counted up to this.
+    fn most_cells(self) -> u32 {
+        self.columns() + 1
+    }
+
+    /// The same of rows.
+    fn most_lines(self) -> u32 {
+        self.lines() + 1
+    }
+
+    /// The function block that a cell names.
+    pub fn block_of(self, cell: Cell<'_>) -> Option<BlockShape> {
+        match (self, cell.operand()?) {
+            (Self::Pl7, Expr::Object(it)) => pl7::block::of_address(&it.address()).map(BlockShape::Pl7),
+            (Self::Pl72, Expr::Object(it)) => pl72::of_address(&it.address()).map(BlockShape::Pl72),
+            (Self::Pl72, Expr::Name(it)) => pl72::of_address(&it.path()).map(BlockShape::Pl72),
+            (Self::Pl72, Expr::Call(it)) => pl72::of_address(it.name()?.text()).map(BlockShape::Pl72),
+            _ => None,
+        }
+    }
+
+    fn width_of(self, element: Element, cell: Cell<'_>) -> u32 {
+        match (self, element) {
+            (Self::Pl7, Element::Compare) => pl7::COMPARE_COLUMNS.value,
+            (Self::Pl72, Element::Compare) => pl72::COMPARE_COLUMNS.value,
+            (Self::Pl7, Element::Operate) => pl7::OPERATE_COLUMNS.value,
+            (Self::Pl72, Element::Operate) => pl72::OPERATE_COLUMNS.value,
+            (_, Element::Block) => self.block_of(cell).and_then(BlockShape::columns).unwrap_or(self.block_columns()),
+            _ => 1,
+        }
+    }
+
+    /// Whether no source tells the size of the block in a cell.
+    fn is_assumed(self, cell: Cell<'_>) -> bool {
+        match self {
+            Self::Pl7 => self.width_of(Element::Block, cell) == pl7::block::COLUMNS.value,
+            Self::Pl72 => self.block_of(cell).and_then(BlockShape::columns).is_none(),
+        }
+    }
+
+    /// Columns of a block whose size is not known.
+    fn block_columns(self) -> u32 {
+        match self {
+            Self::Pl7 => pl7::block::COLUMNS.value,
+            Self::Pl72 => pl72::BLOCK_COLUMNS.value,
+        }
+    }
+}
+
+/// Size and pins of a function block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BlockShape {
+    Pl7(&'static pl7::block::Block),
+    Pl72(&'static pl72::Block),
+}
+
+impl BlockShape {
+    /// Letters of its address; none for the clock of PL7-2.
+    pub fn letters(self) -> &'static str {
+        match self {
+            Self::Pl7(it) => it.letters,
+            Self::Pl72(it) => it.symbol.unwrap_or_default(),
+        }
+    }
+
+    /// Names of its inputs, from top to bottom.
+    pub fn inputs(self) -> impl ExactSizeIterator<Item = &'static str> {
+        let count = match self {
+            Self::Pl7(it) => it.inputs.len(),
+            Self::Pl72(it) => it.inputs.len(),
+        };
+        (0..count).map(move |at| match self {
+            Self::Pl7(it) => it.inputs[at],
+            Self::Pl72(it) => it.inputs[at].name,
+        })
+    }
+
+    /// Names of its outputs, from top to bottom.
+    pub fn outputs(self) -> &'static [&'static str] {
+        match self {
+            Self::Pl7(it) => it.outputs,
+            Self::Pl72(it) => it.outputs,
+        }
+    }
+
+    fn columns(self) -> Option<u32> {
+        match self {
+            Self::Pl7(it) => Some(it.columns.value),
+            Self::Pl72(it) => it.columns.map(|it| it.value),
+        }
+    }
+}
 
 /// Index of a wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,17 +184,12 @@ impl Placed<'_> {
         self.element == Some(Element::Block)
     }
 
-    /// Whether it is a block whose pins are not those of a standard block: that of a DFB.
-    fn is_dfb(&self) -> bool {
-        self.is_block() && block_of(self.cell).is_none()
-    }
-
     fn is_actual(&self) -> bool {
         self.element == Some(Element::Actual)
     }
 
     /// The column behind its last one, from 0.
-    fn end(&self) -> u32 {
+    pub fn end(&self) -> u32 {
         self.column + self.width
     }
 }
@@ -108,6 +225,7 @@ pub enum Flaw {
 
 #[derive(Debug)]
 pub struct Grid<'t> {
+    pub layout: Layout,
     /// Row by row, each from left to right. Empty cells are left out.
     pub placed: Vec<Placed<'t>>,
     /// Cells of each row. Of a number beyond all limits, as many as show that it is.
@@ -144,27 +262,6 @@ enum Unit {
     Part(u32),
 }
 
-/// Cells and rows that one word makes are counted up to this.
-const MOST_CELLS: u32 = pl7::LADDER_COLUMNS.value + 1;
-const MOST_LINES: u32 = pl7::Series::Premium.ladder_lines().value + 1;
-
-/// The function block that a cell names by its address.
-pub fn block_of(cell: Cell<'_>) -> Option<&'static block::Block> {
-    match cell.operand()? {
-        Expr::Object(it) => block::of_address(&it.address()),
-        _ => None,
-    }
-}
-
-fn width_of(element: Element, cell: Cell<'_>) -> u32 {
-    match element {
-        Element::Compare => pl7::COMPARE_COLUMNS.value,
-        Element::Operate => pl7::OPERATE_COLUMNS.value,
-        Element::Block => block_of(cell).map_or(block::COLUMNS, |it| it.columns).value,
-        _ => 1,
-    }
-}
-
 /// Rows of cells while they are read.
 #[derive(Default)]
 struct Rows {
@@ -174,8 +271,8 @@ struct Rows {
 }
 
 impl<'t> Grid<'t> {
-    pub fn new(rung: Rung<'t>) -> Self {
-        let mut grid = Self { placed: Vec::new(), rows: Vec::new(), wires: Vec::new(), open_links: Vec::new() };
+    pub fn new(rung: Rung<'t>, layout: Layout) -> Self {
+        let mut grid = Self { layout, placed: Vec::new(), rows: Vec::new(), wires: Vec::new(), open_links: Vec::new() };
         let mut rows = Rows::default();
         for row in rung.rows() {
             grid.read_row(row, &mut rows);
@@ -185,6 +282,8 @@ impl<'t> Grid<'t> {
     }
 
     fn read_row(&mut self, row: crate::syntax::pl7::ast::RungRow<'t>, rows: &mut Rows) {
+        let layout = self.layout;
+        let most = layout.columns() as usize;
         let at = rows.units.len();
         let mut units = Vec::new();
         let mut excess = None;
@@ -192,12 +291,12 @@ impl<'t> Grid<'t> {
         let mut lines = 1;
         for cell in row.cells() {
             let element = cell.element();
-            let count = cell.count().unwrap_or(1).min(MOST_CELLS);
+            let count = cell.count().unwrap_or(1).min(layout.most_cells());
             match element {
                 Some(Element::EmptyLine) => {
                     // An empty line is a row of its own, whatever else stands in it.
-                    lines = cell.count().unwrap_or(1).clamp(1, MOST_LINES);
-                    let missing = (pl7::LADDER_COLUMNS.value as usize).saturating_sub(units.len());
+                    lines = cell.count().unwrap_or(1).clamp(1, layout.most_lines());
+                    let missing = most.saturating_sub(units.len());
                     units.extend(std::iter::repeat_n(Unit::Empty, missing));
                 }
                 Some(Element::EmptyCell) => units.extend(std::iter::repeat_n(Unit::Empty, count as usize)),
@@ -215,8 +314,8 @@ impl<'t> Grid<'t> {
                 }
                 _ => self.place(cell, element, at, &mut units),
             }
-            is_assumed |= element == Some(Element::Block) && width_of(Element::Block, cell) == block::COLUMNS.value;
-            if units.len() > pl7::LADDER_COLUMNS.value as usize {
+            is_assumed |= element == Some(Element::Block) && layout.is_assumed(cell);
+            if units.len() > most {
                 excess = excess.or(Some(cell));
             }
         }
@@ -226,15 +325,15 @@ impl<'t> Grid<'t> {
         self.rows.push(Row { columns, excess, is_assumed, is_empty, range });
         rows.units.push(units);
         for _ in 1..lines {
-            let columns = pl7::LADDER_COLUMNS.value;
+            let columns = layout.columns();
             self.rows.push(Row { columns, excess: None, is_assumed: false, is_empty: true, range });
-            rows.units.push(vec![Unit::Empty; pl7::LADDER_COLUMNS.value as usize]);
+            rows.units.push(vec![Unit::Empty; most]);
         }
     }
 
     fn place(&mut self, cell: Cell<'t>, element: Option<Element>, row: usize, units: &mut Vec<Unit>) {
         let index = u32::try_from(self.placed.len()).unwrap_or(u32::MAX);
-        let width = element.map_or(1, |it| width_of(it, cell));
+        let width = element.map_or(1, |it| self.layout.width_of(it, cell));
         let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
         self.placed.push(Placed {
             cell,
@@ -297,7 +396,7 @@ impl<'t> Grid<'t> {
         for index in 0..self.placed.len() {
             let (row, column) = (self.placed[index].row as usize, self.placed[index].column as usize);
             let width = self.placed[index].width as usize;
-            let is_dfb = self.placed[index].is_dfb();
+            let is_dfb = self.is_dfb(&self.placed[index]);
             let mut inputs = Vec::new();
             let mut outputs = Vec::new();
             for line in 0..self.lines(index) {
@@ -346,10 +445,10 @@ impl<'t> Grid<'t> {
     fn lines(&self, index: usize) -> usize {
         let it = &self.placed[index];
         match it.element {
-            Some(Element::Block) => match block_of(it.cell) {
-                Some(block) => block.inputs.len().max(block.outputs.len()),
+            Some(Element::Block) => match self.layout.block_of(it.cell) {
+                Some(block) => block.inputs().len().max(block.outputs().len()),
                 // As many as are free below, for its pins are not known.
-                None => MOST_LINES as usize - 1,
+                None => self.layout.lines() as usize,
             },
             _ => 1,
         }
@@ -399,7 +498,7 @@ impl<'t> Grid<'t> {
         if self.is_beyond_reason() {
             return None;
         }
-        let is_before = |it: &&Placed<'t>| it.is_dfb() && it.end() + pl7::DFB_GAP.value > block.column;
+        let is_before = |it: &&Placed<'t>| self.is_dfb(it) && it.end() + pl7::DFB_GAP.value > block.column;
         block.inputs.iter().filter(|it| **it != Wire::RAIL).find_map(|&wire| {
             let beside = self.left_of(wire).find(is_before);
             // Less than two columns: there is room for one element.
@@ -413,7 +512,14 @@ impl<'t> Grid<'t> {
     /// The connected networks, the topmost first, of the same row the leftmost first; in each, the elements in the order
     /// in which they are evaluated: row by row, and where a branch from below joins, that branch before what goes on
     /// (PL7:2838-2899). An element follows all that lie on its left.
+    ///
+    /// PL7-2 scans the whole network column by column (PL72:626).
     pub fn networks(&self) -> Vec<Vec<usize>> {
+        if self.layout == Layout::Pl72 {
+            let mut all: Vec<usize> = (0..self.placed.len()).collect();
+            all.sort_by_key(|&it| (self.placed[it].column, self.placed[it].row));
+            return vec![all];
+        }
         let mut sets = Sets::new(self.placed.len());
         for wire in self.wires.iter().skip(1) {
             let mut members = wire.left.iter().chain(&wire.right);
@@ -456,7 +562,7 @@ impl<'t> Grid<'t> {
         let open_links: FxHashSet<TextRange> = self.open_links.iter().copied().collect();
         for it in &self.placed {
             let Some(element) = it.element else { continue };
-            let columns = pl7::LADDER_COLUMNS.value;
+            let columns = self.layout.columns();
             // A row that is too long is one mistake.
             if it.end() <= columns {
                 if element.is_test() && it.end() == columns {
@@ -518,7 +624,7 @@ impl<'t> Grid<'t> {
             // Those among them that serve nothing else.
             let mut private = vec![false; self.wires.len()];
             private[index] = true;
-            for _ in 0..pl7::LADDER_COLUMNS.value {
+            for _ in 0..self.layout.columns() {
                 for &it in &chain {
                     let serves = |right: &u32| {
                         let right = &self.placed[*right as usize];
@@ -542,9 +648,14 @@ impl<'t> Grid<'t> {
         }
     }
 
+    /// Whether it is a block whose pins are not those of a standard block: that of a DFB, which PL7-2 does not have.
+    fn is_dfb(&self, it: &Placed<'_>) -> bool {
+        self.layout == Layout::Pl7 && it.is_block() && self.layout.block_of(it.cell).is_none()
+    }
+
     /// Beyond all controllers' limits the rung is wrong anyway.
     fn is_beyond_reason(&self) -> bool {
-        self.placed.len() > 2 * (MOST_LINES * MOST_CELLS) as usize
+        self.placed.len() > 2 * (self.layout.most_lines() * self.layout.most_cells()) as usize
     }
 
     fn links_left_of(&self, wire: usize) -> impl Iterator<Item = &Placed<'t>> {
@@ -658,7 +769,7 @@ mod tests {
         let parse = crate::syntax::pl7::parse_ld(&format!("RUNG\n{rows}\nEND_RUNG"));
         assert_eq!(parse.errors(), [], "{rows}");
         let rung = Root::cast(parse.syntax()).and_then(|it| it.rungs().next()).expect("a rung");
-        check(&Grid::new(rung))
+        check(&Grid::new(rung, Layout::Pl7))
     }
 
     /// Operands of each connected network in the order of evaluation.

@@ -16,5 +16,6 @@ pub mod pl7_tables;
 pub mod step_times;
 pub mod symbols;
 pub mod unit;
+pub mod work;
 
 pub use unit::UnitModel;

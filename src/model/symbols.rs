@@ -56,6 +56,8 @@ pub enum RemarkKind {
     Module,
     /// A parameter or variable of a DFB.
     Item,
+    /// A network of PL7-2.
+    Network,
 }
 
 /// What makes two spellings the same symbol.

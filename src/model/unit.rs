@@ -18,6 +18,7 @@ use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use super::pl7_kinds::Kind;
 use super::symbols::{Remark, Symbol};
+use super::work::Network;
 use crate::syntax::Language;
 
 /// An input or output of a timer, counter, monostable, register or drum.
@@ -548,6 +549,8 @@ pub struct UnitModel {
     pub oddities: Vec<Oddity>,
     pub unreachable: Vec<Unreachable>,
     pub hollows: Vec<Hollow>,
+    /// Networks of PL7-2, in the order in which they are scanned.
+    pub networks: Vec<Network>,
     /// Anchor of the first operation of PL7 that can overflow.
     pub computes: Option<u32>,
     /// Ranges that facts name; the first is the unit's heading.

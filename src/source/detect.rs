@@ -9,7 +9,8 @@ use super::decode::{Encoding, SourceText, decode, looks_binary};
 use super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
 };
-use crate::model::entity::{BlockKind, BlockName, Entity};
+use crate::model::entity::{BlockKind, BlockName, Entity, Family};
+use crate::model::object;
 use crate::syntax::pl7::ladder_words;
 
 use super::scan::{Comments, Lines};
@@ -107,8 +108,10 @@ pub enum Detected {
     Exchange,
     /// PL7 text without blocks; where no heading says the language, it is this one.
     Pasted(Pl7Text),
-    /// PL7-2 text with headings, or what the user says is PL7-2.
+    /// PL7-2 text without blocks.
     Pl72,
+    /// PL7-2 code in the exchange form of PL7.
+    Pl72Exchange,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
     /// A PL7 project: its text is the listing of its tables.
@@ -128,12 +131,15 @@ pub struct FileHint<'p> {
     /// Named by the user rather than found in a folder.
     pub explicit: bool,
     pub dialect: Dialect,
+    /// The family of the controller that is configured.
+    pub family: Option<Family>,
 }
 
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
     pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST, LD and GR7";
-    pub const PL7_2: &str = "PL7-2 ladder or Grafcet";
+    pub const PL7_2: &str = "PL7-2 code in a file with PL7 code";
+    pub const PL7_2_LANGUAGE: &str = "PL7-2 language other than ladder and Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
     pub const APPLICATION: &str = "PL7 application (FEF)";
@@ -287,8 +293,22 @@ fn is_binary_mesh(bytes: &[u8]) -> bool {
 /// What a text is.
 pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
     let tally = Tally::of(text);
+    match (detect_form(hint, text, &tally), hint.dialect) {
+        (Detected::Exchange, Dialect::Pl72) => Detected::Pl72Exchange,
+        (Detected::Exchange, Dialect::Auto) if tally.is_pl7_2(hint.family) => Detected::Pl72Exchange,
+        (Detected::Pasted(Pl7Text::Ld | Pl7Text::Gr7 | Pl7Text::Sfc), Dialect::Auto)
+            if tally.headings() == 0 && tally.is_pl7_2(hint.family) =>
+        {
+            Detected::Pl72
+        }
+        (detected, _) => detected,
+    }
+}
+
+/// What a text is, but for whose ladder and charts it has.
+fn detect_form(hint: FileHint<'_>, text: &str, tally: &Tally) -> Detected {
     match hint.dialect {
-        Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, &tally),
+        Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, tally),
         Dialect::Step7 => Detected::Step7,
         Dialect::Pl7
         | Dialect::Pl7Il
@@ -400,6 +420,10 @@ struct Tally {
     st: u32,
     /// Lines with something that only PL7 has: `%MW10`, `%L5:`, `!` before a sentence.
     pl7: u32,
+    /// Lines with something that only PL7-2 has: `I0,05`, `T0,D`, `W1 -> W2`.
+    pl7_2: u32,
+    /// Lines with an object that PL7-2 does not have, by its form: `%M5`, `%I1.0`.
+    not_pl7_2: u32,
     /// Headings of pasted PL7 text, by language.
     headings_il: u32,
     headings_st: u32,
@@ -501,6 +525,8 @@ impl Tally {
         let first = word(code).0.to_ascii_uppercase();
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
+        self.pl7_2 += u32::from(has_pl7_2_object(line));
+        self.not_pl7_2 += u32::from(is_pl7 && has_object_of_pl7_alone(line));
         self.dfb += u32::from(is_dfb_line(code, first));
         self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
@@ -546,6 +572,11 @@ impl Tally {
             _ if !is_pl7 && is_prose(code) => self.prose += 1,
             _ => {}
         }
+    }
+
+    /// Whether ladder and charts are PL7-2's: most of their operands say so, or where they say nothing, the configuration.
+    fn is_pl7_2(&self, configured: Option<Family>) -> bool {
+        self.pl7_2 > self.not_pl7_2 || self.not_pl7_2 == 0 && configured == Some(Family::Pl72)
     }
 
     fn is_exchange(&self) -> bool {
@@ -612,7 +643,7 @@ impl Tally {
         let structure = if self.st > 0 { self.scl } else { 0 };
         let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
         let is_chart = self.chart > 0 && self.chart + self.chart_words > 2 && self.graph == 0;
-        if is_chart && charted && (self.pages > 1 || self.pl7 > 0 && self.iec == 0) {
+        if is_chart && charted && (self.pages > 1 || self.pl7 + self.pl7_2 > 0 && self.iec == 0) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
         if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
@@ -699,6 +730,32 @@ fn has_pl7_object(line: &str) -> bool {
             && number.starts_with(|c: char| c.is_ascii_digit() || upper && c == '(')
     })
 }
+
+/// Whether a line names an object, or transfers a value, as PL7-2 alone does: `I0,05`, `T0,D`, `W5,A`, `W1 -> W2`. No symbol
+/// has a comma.
+fn has_pl7_2_object(line: &str) -> bool {
+    let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
+    let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
+    let is_transfer = || line.contains("->") && line.contains("END_BLOCK") && !line.contains(":=");
+    words.any(|it| object::pl72::parse(it).is_ok_and(|it| it.object.class != object::Class::Fault)) || is_transfer()
+}
+
+/// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
+/// others too: `%I0,05`, `%X3`.
+fn has_object_of_pl7_alone(line: &str) -> bool {
+    memchr::memchr_iter(b'%', line.as_bytes()).any(|at| {
+        let rest = line.get(at..).unwrap_or_default();
+        let is_part = |it: char| it.is_ascii_alphanumeric() || matches!(it, '%' | ',' | '.' | ':');
+        let end = rest.find(|it| !is_part(it)).unwrap_or(rest.len()).min(LONGEST_PL7_2 + 2);
+        let word = rest.get(..end).unwrap_or_default().trim_end_matches([',', ':', '.']);
+        let is_label =
+            matches!(word.as_bytes(), [b'%', b'L' | b'l', digits @ ..] if digits.iter().all(u8::is_ascii_digit));
+        !is_label && object::pl72::parse(word).is_err()
+    })
+}
+
+/// Characters of the longest address with a comma.
+const LONGEST_PL7_2: usize = "COM15,3,F".len();
 
 /// What follows `%L10:`.
 fn strip_pl7_label(line: &str) -> &str {
@@ -1152,6 +1209,8 @@ mod tests {
         assert_eq!(forced(Dialect::Pl7Il, PL7_ST), IL);
         assert_eq!(forced(Dialect::Pl7St, "[SOURCE_UNIT]"), Detected::Exchange);
         assert_eq!(forced(Dialect::Pl72, "RUNG"), Detected::Pl72);
+        assert_eq!(forced(Dialect::Pl72, "[SOURCE_UNIT]\nPROGRAM\n[EOF]\n"), Detected::Pl72Exchange);
+        assert_eq!(forced(Dialect::Pl7Ld, "RUNG\nOPEN_CONTACT(I0,05);\nEND_RUNG"), Detected::Pasted(Pl7Text::Ld));
         let explicit = FileHint { explicit: true, ..hint("a.xyz") };
         assert_eq!(detect(explicit, "= A 4.0"), STEP7);
         assert_eq!(detect(explicit, "%M0 := 1;"), ST);
@@ -1185,5 +1244,49 @@ mod tests {
         ) {
             let _ = detect(hint(&path), &text);
         }
+    }
+
+    /// Ladder and charts say by their operands whose they are; where they do not, the configured controller does.
+    #[test]
+    fn pl7_2_by_its_operands() {
+        let rung = |operand: &str| format!("RUNG\nOPEN_CONTACT({operand}),H_LINK(8),COIL(B1);\nEND_RUNG\n");
+        let with = |family, text: &str| detect(FileHint { family, ..hint("a.txt") }, text);
+        for operand in ["I0,05", "T0,D", "W5,A", "X3,V", "i1,b", "C0,E"] {
+            assert_eq!(with(None, &rung(operand)), Detected::Pl72, "{operand}");
+        }
+        let ladder = Detected::Pasted(Pl7Text::Ld);
+        for operand in ["%M0", "%I1.0", "Pump", "B5", "X3", "I1.0"] {
+            assert_eq!(with(None, &rung(operand)), ladder, "{operand}");
+        }
+        for operand in ["B5", "X3", "Pump"] {
+            assert_eq!(with(Some(Family::Pl72), &rung(operand)), Detected::Pl72, "{operand}");
+            assert_eq!(with(Some(Family::Pl7), &rung(operand)), ladder, "{operand}");
+        }
+        // An operand of PL7 is never one of PL7-2.
+        assert_eq!(with(Some(Family::Pl72), &rung("%I1.0")), ladder);
+        assert_eq!(with(None, &format!("{}{}", rung("I0,05"), rung("%I1.0"))), ladder);
+        // With the percent sign of a converter, and its labels.
+        for operand in ["%I0,05", "%T0,D", "%X3,V"] {
+            assert_eq!(with(None, &rung(operand).replace("RUNG\nO", "RUNG %L5:\nO")), Detected::Pl72, "{operand}");
+        }
+        for operand in ["%X3", "%B5", "%T0"] {
+            assert_eq!(with(None, &rung(operand)), ladder, "{operand}");
+            assert_eq!(with(Some(Family::Pl72), &rung(operand)), Detected::Pl72, "{operand}");
+        }
+        let operate = "RUNG\nH_LINK(7),OPERATE 127 -> W10 END_BLOCK;\nEND_RUNG\n";
+        assert_eq!(with(None, operate), Detected::Pl72);
+        let chart =
+            "INITIAL_STEP X0 : END_STEP\nSTEP X1 : END_STEP\nTRANSITION FROM X0 TO X1 := I0,05; END_TRANSITION\n";
+        assert_eq!(with(None, chart), Detected::Pl72);
+        let exchange =
+            |operand: &str| format!("[SOURCE_UNIT]\nLANGUAGE = LD\nPROGRAM\n{}END_PROGRAM\n[EOF]\n", rung(operand));
+        assert_eq!(with(None, &exchange("I0,05")), Detected::Pl72Exchange);
+        assert_eq!(with(None, &exchange("B5")), Detected::Exchange);
+        assert_eq!(with(Some(Family::Pl72), &exchange("B5")), Detected::Pl72Exchange);
+        assert_eq!(with(Some(Family::Pl72), &exchange("%M5")), Detected::Exchange);
+        // A mistake in one operand changes nothing.
+        assert_eq!(with(None, &format!("{}{}{}", rung("I0,05"), rung("T0,D"), rung("%M5"))), Detected::Pl72);
+        // Lists and text are PL7's, whatever is configured.
+        assert_eq!(with(Some(Family::Pl72), "! %M1 := %M2;\n! %M3 := %M4;\n! %M5 := %M6;\n"), ST);
     }
 }

@@ -158,7 +158,7 @@ pub(super) fn pl7_heading(line: &str) -> Option<Heading> {
 
 /// The module of a PL7-2 program: preliminary, sequential and posterior processing of the master task (PL72:1505-1511), or a
 /// whole task. Of the sequential processing, what follows names the step or the transition: `SEQ - X3`, `SEQ - X3 --> X4`.
-fn pl7_2_entity(module: &str) -> Option<Entity> {
+pub(super) fn pl7_2_entity(module: &str) -> Option<Entity> {
     let (first, rest) = address_word(module);
     let (task, part) = match first.to_ascii_uppercase().as_str() {
         "" | "MAST" => (Task::Mast, Part::Main),

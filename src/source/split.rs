@@ -12,11 +12,11 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::detect::{Detected, Pl7Text, pl7_text, unsupported};
 use super::heading::{
-    HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_address, pl7_heading,
-    strip_prefix_ignore_case, word,
+    Heading, HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_2_entity, pl7_address,
+    pl7_heading, strip_prefix_ignore_case, word,
 };
 use super::scan::{Comments, Lines};
-use crate::model::entity::{Entity, Part, Task};
+use crate::model::entity::{Entity, Family, Part, Task};
 use crate::syntax::{Language, Mnemonics};
 
 /// A piece of a file that is parsed and checked by itself.
@@ -48,7 +48,8 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
     match detected {
         Detected::Step7 => step7(&mut units, hint),
         Detected::Pasted(default) => pasted(&mut units, default, hint),
-        Detected::Exchange => exchange(&mut units),
+        Detected::Exchange => exchange(&mut units, Family::Pl7),
+        Detected::Pl72Exchange => exchange(&mut units, Family::Pl72),
         Detected::Stx => project(&mut units),
         Detected::Pl72 => pl7_2(&mut units, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
@@ -73,7 +74,7 @@ pub fn resplit(
 ) -> Option<Vec<UnitSpan>> {
     let is_own = |it: &UnitSpan| match detected {
         Detected::Step7 => matches!(it.entity, Entity::Block { .. }),
-        Detected::Pasted(_) => true,
+        Detected::Pasted(_) | Detected::Pl72 => true,
         _ => false,
     };
     let changed = common_start(old.as_bytes(), new.as_bytes());
@@ -194,7 +195,7 @@ impl Units<'_> {
 
     /// Whether the last draft is of a chart.
     fn in_chart(&self) -> bool {
-        self.drafts.last().is_some_and(|it| it.language == Some(Language::Pl7Gr7))
+        self.drafts.last().is_some_and(|it| matches!(it.language, Some(Language::Pl7Gr7 | Language::Pl72Gr7)))
     }
 
     fn push(&mut self, start: usize, draft: Draft) {
@@ -415,29 +416,56 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
     }
 }
 
-/// PL7-2: headings, and code before the first one, all in languages that are not read.
+/// The language of PL7-2 that text without a heading is in.
+fn pl7_2_language(text: Pl7Text) -> Language {
+    match text {
+        Pl7Text::Gr7 => Language::Pl72Gr7,
+        Pl7Text::Sfc => Language::Pl72Sfc,
+        Pl7Text::Ld | Pl7Text::Il | Pl7Text::St => Language::Pl72Ld,
+    }
+}
+
+/// PL7-2: headings, and code before the first one.
 fn pl7_2(units: &mut Units<'_>, hint: &SplitHint) {
-    let draft =
-        |entity| Draft { unsupported: Some(unsupported::PL7_2), ..Draft::new(entity, Some(Language::Exchange)) };
-    let main = || hint.entity.clone().unwrap_or(Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main });
+    let unnamed = |text: &str| {
+        let language = pl7_2_language(pl7_text(text));
+        let part = if language.is_chart() { Part::Chart("SEQ".into()) } else { Part::Main };
+        let main = Entity::Pl7 { task: Task::Mast, section: None, part };
+        Draft::new(hint.entity.clone().unwrap_or(main), Some(language))
+    };
+    let named = |heading: Heading| {
+        let (language, unsupported) = match heading.language {
+            HeadingLanguage::Ladder => (Language::Pl72Ld, None),
+            HeadingLanguage::Grafcet => (Language::Pl72Gr7, None),
+            HeadingLanguage::Il | HeadingLanguage::St => (Language::Exchange, Some(unsupported::PL7_2_LANGUAGE)),
+        };
+        Draft { unsupported, ..Draft::new(heading.entity, Some(language)) }
+    };
+    let mut pages = 0;
     for line in Lines::new(units.text, Comments::Pl7) {
         if line.code.is_empty() {
             continue;
         }
         if let Some(heading) = pl7_heading(line.code) {
-            units.push(units.code_end, draft(heading.entity));
+            units.push(units.code_end, named(heading));
+            pages = 0;
         } else if units.drafts.is_empty() {
-            units.push(0, draft(main()));
+            units.push(0, unnamed(units.text));
+        }
+        if units.in_chart()
+            && let Some(page) = page_line(line.code)
+        {
+            units.page(page, &mut pages);
         }
         units.code_end = line.end;
     }
     if units.drafts.is_empty() {
-        units.push(0, draft(main()));
+        units.push(0, unnamed(units.text));
     }
 }
 
-/// A PL7 exchange file: each block in brackets, and the program in each source unit.
-fn exchange(units: &mut Units<'_>) {
+/// An exchange file: each block in brackets, and the program in each source unit.
+fn exchange(units: &mut Units<'_>, family: Family) {
     #[derive(PartialEq)]
     enum State {
         /// Between blocks, or in one without a program.
@@ -474,7 +502,8 @@ fn exchange(units: &mut Units<'_>) {
         match state {
             State::Keys => {
                 if let Some(program) = keys.read(code) {
-                    let draft = keys.program(program);
+                    let draft =
+                        if family == Family::Pl72 { keys.pl7_2_program(program) } else { keys.program(program) };
                     if let Some(header) = units.drafts.last_mut() {
                         header.label = Some(format_smolstr!("[SOURCE_UNIT] {}", draft.name()));
                     }
@@ -649,6 +678,24 @@ impl<'t> SourceUnit<'t> {
         Draft { unsupported, ..Draft::new(entity, language) }
     }
 
+    /// As [`Self::program`], of PL7-2, which has no sections.
+    fn pl7_2_program(&self, line: &str) -> Draft {
+        let repeated = strip_prefix_ignore_case(line, "PROGRAM").unwrap_or_default();
+        let entity = self.address.into_iter().chain([repeated]).find_map(|it| {
+            let module = strip_prefix_ignore_case(it, "PL7-2").unwrap_or(it);
+            pl7_2_entity(module).or_else(|| pl7_address(module.trim_start()))
+        });
+        let entity = entity.unwrap_or(Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main });
+        let language = self.language.unwrap_or_default().to_ascii_uppercase();
+        let (language, unsupported) = match language.as_str() {
+            "LD" => (Language::Pl72Ld, None),
+            "IL" | "ST" => (Language::Exchange, Some(unsupported::PL7_2_LANGUAGE)),
+            "" if !matches!(entity, Entity::Pl7 { part: Part::Chart(_), .. }) => (Language::Pl72Ld, None),
+            _ => (Language::Pl72Gr7, None),
+        };
+        Draft { unsupported, ..Draft::new(entity, Some(language)) }
+    }
+
     /// Names the section after the unit, unless the unit's name only repeats its address: `MAST_SR1`, `MAST_Chart`.
     fn name_section(&self, entity: &mut Entity) {
         let Entity::Pl7 { task, section: section @ None, part } = entity else { return };
@@ -711,7 +758,7 @@ fn next_key(line: &str) -> Option<Key> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::detect::{Dialect, FileHint, detect};
+    use super::super::detect::{FileHint, detect};
     use super::*;
     use crate::model::entity::{BlockKind, BlockName};
 
@@ -862,21 +909,48 @@ mod tests {
 
     #[test]
     fn pl7_2_programs() {
+        let (ld, gr7, sfc) = (Language::Pl72Ld, Language::Pl72Gr7, Language::Pl72Sfc);
         let units = check(
             Detected::Pl72,
             "(* A *)\nLD : PL7-2 - PRL\nRUNG\nLD : PL7-2 - SEQ - X3\n\nRUNG\nLD : PL7-2 - SEQ - X3 --> X4\n\
-             LD : PL7-2 - POST\nLD : PL7-2 - FAST\n",
+             LD : PL7-2 - POST\nGR7 : PL7-2 - SEQ\nPAGE 1\nEND_PAGE\nPAGE 2\nLD : PL7-2 - FAST\nST : PL7-2 - MAST\n",
             &[
-                ("MAST - PRL", KEYS, "(* A *)\nLD : PL7-2 - PRL\nRUNG\n"),
-                ("MAST - SEQ - X3", KEYS, "LD : PL7-2 - SEQ - X3\n\nRUNG\n"),
-                ("MAST - SEQ - X3 --> X4", KEYS, "LD : PL7-2 - SEQ - X3 --> X4\n"),
-                ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
-                ("FAST - MAIN", KEYS, "LD : PL7-2 - FAST\n"),
+                ("MAST - PRL", ld, "(* A *)\nLD : PL7-2 - PRL\nRUNG\n"),
+                ("MAST - SEQ - X3", ld, "LD : PL7-2 - SEQ - X3\n\nRUNG\n"),
+                ("MAST - SEQ - X3 --> X4", ld, "LD : PL7-2 - SEQ - X3 --> X4\n"),
+                ("MAST - POST", ld, "LD : PL7-2 - POST\n"),
+                ("MAST - SEQ - PAGE 1", gr7, "GR7 : PL7-2 - SEQ\nPAGE 1\nEND_PAGE\n"),
+                ("MAST - SEQ - PAGE 2", gr7, "PAGE 2\n"),
+                ("FAST - MAIN", ld, "LD : PL7-2 - FAST\n"),
+                ("MAST - MAIN", KEYS, "ST : PL7-2 - MAST\n"),
             ],
         );
-        assert_eq!(unsupported(&units), [Some(super::unsupported::PL7_2); 5]);
-        let units = check(Detected::Pl72, "RUNG\nEND_RUNG\n", &[("MAST - MAIN", KEYS, "RUNG\nEND_RUNG\n")]);
-        assert_eq!(unsupported(&units), [Some(super::unsupported::PL7_2)]);
+        let expected: Vec<_> = units.iter().map(|it| it.unsupported.is_some()).collect();
+        assert_eq!(expected, [false, false, false, false, false, false, false, true]);
+        check(Detected::Pl72, "RUNG\nEND_RUNG\n", &[("MAST - MAIN", ld, "RUNG\nEND_RUNG\n")]);
+        let chart = "INITIAL_STEP X0 : END_STEP\n";
+        check(Detected::Pl72, chart, &[("MAST - SEQ", sfc, chart)]);
+    }
+
+    #[test]
+    fn pl7_2_exchange_files() {
+        let unit = |language: &str, address: &str| {
+            format!(
+                "[SOURCE_UNIT]\nNAME = 'POST'\nLANGUAGE = {language}\nBODY =\nADDRESS = {address}\nPROGRAM\nRUNG\nEND_PROGRAM\n"
+            )
+        };
+        let language = |detected, text: &str| {
+            let units = split(text, detected, &SplitHint::default());
+            units.last().map(|it| (it.entity.to_string(), it.language, it.unsupported.is_some()))
+        };
+        let of = |text: &str| language(Detected::Pl72Exchange, text);
+        assert_eq!(of(&unit("LD", "MAST POST")), Some(("MAST - POST".to_owned(), Language::Pl72Ld, false)));
+        assert_eq!(of(&unit("LD", "PRL")), Some(("MAST - PRL".to_owned(), Language::Pl72Ld, false)));
+        assert_eq!(of(&unit("LD", "PL7-2 FAST")), Some(("FAST - MAIN".to_owned(), Language::Pl72Ld, false)));
+        assert_eq!(of(&unit("OTHERS", "SEQ")), Some(("MAST - SEQ".to_owned(), Language::Pl72Gr7, false)));
+        assert_eq!(of(&unit("IL", "POST")), Some(("MAST - POST".to_owned(), KEYS, true)));
+        let pl7 = language(Detected::Exchange, &unit("LD", "MAST MAIN"));
+        assert_eq!(pl7.map(|it| it.1), Some(LD));
     }
 
     #[test]
@@ -1111,7 +1185,7 @@ mod tests {
         #[test]
         fn units_tile_any_text(pieces in prop::collection::vec(PIECES, 0..24)) {
             let text = pieces.concat();
-            let hint = FileHint { dialect: Dialect::Auto, explicit: true, path: None };
+            let hint = FileHint { explicit: true, ..FileHint::default() };
             for detected in [
                 detect(hint, &text),
                 Detected::Step7,

@@ -12,7 +12,7 @@ mod parser;
 pub mod awl;
 pub mod exchange;
 pub mod pl7;
-pub mod pl72;
+mod pl72;
 pub mod xref;
 
 pub use kind::SyntaxKind;
@@ -43,6 +43,12 @@ pub enum Language {
     Pl7Gr7,
     /// IEC 61131-3 sequential function chart as text, with PL7 code.
     Sfc,
+    /// PL7-2 ladder, in the form of PL7's.
+    Pl72Ld,
+    /// PL7-2 Grafcet, in the form of PL7's pages.
+    Pl72Gr7,
+    /// IEC 61131-3 sequential function chart as text, with PL7-2 code.
+    Pl72Sfc,
     /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
     Exchange,
     /// The cross-reference of a PL7 project whose code is not readable.
@@ -52,7 +58,12 @@ pub enum Language {
 impl Language {
     /// Whether the text is a chart, which holds code of other languages.
     pub fn is_chart(self) -> bool {
-        matches!(self, Self::Pl7Gr7 | Self::Sfc)
+        matches!(self, Self::Pl7Gr7 | Self::Sfc | Self::Pl72Gr7 | Self::Pl72Sfc)
+    }
+
+    /// Whether operands and operations are those of PL7-2.
+    pub fn is_pl7_2(self) -> bool {
+        matches!(self, Self::Pl72Ld | Self::Pl72Gr7 | Self::Pl72Sfc)
     }
 }
 
@@ -64,6 +75,8 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Pl7St => pl7::parse_st(text),
         Language::Pl7Gr7 | Language::Sfc => pl7::parse_chart(text),
         Language::Pl7Ld => pl7::parse_ld(text),
+        Language::Pl72Ld => pl7::parse_pl7_2_ld(text),
+        Language::Pl72Gr7 | Language::Pl72Sfc => pl7::parse_pl7_2_chart(text),
         Language::Exchange => exchange::parse(text),
         Language::Pl7Xref => xref::parse(text),
     }

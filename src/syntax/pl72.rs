@@ -1,7 +1,7 @@
-//! PL7-2: the lexer of what stands in the blocks of its networks.
+//! PL7-2: the lexer of its networks and charts. The grammar is that of PL7's.
 //!
-//! An address with its commas, string length or index is one token whatever it addresses, and whether it is one or not:
-//! `I0,05`, `W5(W10)`, `B0[16]`, `D1,W3`. So is `%MW10.X4`, which a program converted by hand may keep.
+//! An address with its commas, string length or index is one token, whether there is such an object or not: `I0,05`,
+//! `W5(W10)`, `B0[16]`, `D1,W3`. So is `%MW10.X4`, which a program converted by hand may keep.
 
 use logos::{Lexer, Logos};
 
@@ -18,6 +18,8 @@ enum Lexeme {
     UnclosedComment,
     #[token("*)")]
     Unknown,
+    SentenceStart,
+    SentenceEnd,
 
     // Words: operations (PL72:1022-1053) and those of the form around the blocks.
     #[regex(
@@ -31,11 +33,16 @@ enum Lexeme {
     // PL72:981-983. The closing quote may be missing: the grammar says so.
     #[regex(r"[LlHhMm]'[^'\r\n]*'?")]
     TypedConstant,
+    // Names of the form around the program: `PROGRAM MAST 'Chart'`.
+    #[regex(r"'[^'\r\n]*'?")]
+    CharString,
     #[regex(r"%?[A-Za-z][A-Za-z]?[A-Za-z]?[0-9]+", address, priority = 20)]
     #[regex(r"(?i:FC|DT|DTP)", address, priority = 20)]
     ObjectAddress,
     #[regex(r"%?[Ll][0-9]+", priority = 30)]
     LabelAddress,
+    #[regex(r"(\.|\u{2026})([ \t\u{A0}]*(\.|\u{2026}))+|\u{2026}")]
+    Elision,
 
     #[token("!")]
     Bang,
@@ -57,6 +64,8 @@ enum Lexeme {
     LBrack,
     #[token("]")]
     RBrack,
+    #[token(":=")]
+    Assign,
     #[token("=")]
     Eq,
     #[token("<>")]
@@ -93,8 +102,8 @@ macro_rules! same_names {
 }
 
 same_names! {
-    Whitespace Newline Comment UnclosedComment Unknown Ident Number TypedConstant ObjectAddress LabelAddress Bang Percent
-    Colon Semicolon Comma Dot LParen RParen LBrack RBrack Eq Ne Lt Le Gt Ge Plus Minus Star Slash Arrow
+    Whitespace Newline Comment UnclosedComment Unknown SentenceStart SentenceEnd Ident Number TypedConstant CharString
+    ObjectAddress LabelAddress Elision Bang Percent Colon Semicolon Comma Dot LParen RParen LBrack RBrack Assign Eq Ne Lt Le Gt Ge Plus Minus Star Slash Arrow
 }
 
 /// A comment ends at the first `*)`.
@@ -103,7 +112,14 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     match memchr::memmem::find(rest.as_bytes(), b"*)") {
         Some(inner) => {
             lexer.bump(inner + 2);
-            Lexeme::Comment
+            let inner = rest.get(..inner).unwrap_or_default();
+            if inner.eq_ignore_ascii_case("PHRASE") {
+                Lexeme::SentenceStart
+            } else if inner.eq_ignore_ascii_case("END_PHRASE") {
+                Lexeme::SentenceEnd
+            } else {
+                Lexeme::Comment
+            }
         }
         None => {
             lexer.bump(rest.len());
@@ -112,19 +128,42 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     }
 }
 
+/// Letters before the number of an object: of PL7-2 (PL72:253-310), then those that PL7 gives to the same objects.
+const OBJECT_LETTERS: [&str; 38] = [
+    "I", "O", "B", "SY", "X", "S", "W", "CW", "SW", "COM", "IW", "OW", "T", "C", "FC", "DT", "DTP", "M", "R", "D",
+    "TXT", "E", "A", "Q", "K", "MW", "KW", "QW", "MB", "KB", "ID", "QD", "MD", "KD", "TM", "MN", "DR", "XM",
+];
+
+/// Whether a word starts an address. Letters that are PL7's or the other vendor's alone need an item behind, for names of
+/// actions look like them: `A1`.
+fn is_object(word: &str, rest: &str) -> bool {
+    let letters = word.trim_end_matches(|it: char| it.is_ascii_digit());
+    let is_foreign = ["E", "A", "Q", "K"].iter().any(|it| it.eq_ignore_ascii_case(letters));
+    word.starts_with('%')
+        || OBJECT_LETTERS.iter().any(|it| it.eq_ignore_ascii_case(letters))
+            && (!is_foreign || matches!(rest.as_bytes(), [b',' | b'.', digit, ..] if digit.is_ascii_digit()))
+}
+
 /// Takes what belongs to an address after its number: at most two items, then a length or an index.
 ///
 /// A comma also separates the cells of a network, so an item is taken only where it is a whole word that can be one.
 fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
+    if !is_object(lexer.slice(), lexer.remainder()) {
+        return Lexeme::Ident;
+    }
     let is_drum = matches!(lexer.slice().as_bytes(), [b'D' | b'd', digit, ..] if digit.is_ascii_digit());
     let rest = lexer.remainder().as_bytes();
     let mut end = 0;
     for _ in 0..2 {
-        let Some((b',' | b'.' | b':', tail)) = rest.get(end..).and_then(<[u8]>::split_first) else { break };
+        let Some((separator @ (b',' | b'.' | b':'), tail)) = rest.get(end..).and_then(<[u8]>::split_first) else {
+            break;
+        };
+        // The steps of `FROM (X1,X2)` are two.
+        let is_pl7 = *separator != b',';
         let length = tail.iter().take_while(|it| it.is_ascii_alphanumeric() || **it == b'_').count();
         let is_item = match tail.get(..length).unwrap_or_default() {
-            [_] | [b'0'..=b'9', b'0'..=b'9'] | [b'X' | b'x', b'0'..=b'9'] => true,
-            [b'X' | b'x', b'0'..=b'9', b'0'..=b'9'] => true,
+            [_] | [b'0'..=b'9', b'0'..=b'9'] => true,
+            [b'X' | b'x', b'0'..=b'9'] | [b'X' | b'x', b'0'..=b'9', b'0'..=b'9'] => is_pl7,
             [b'W' | b'w', digits @ ..] => is_drum && digits.len() < 3 && digits.iter().all(u8::is_ascii_digit),
             _ => false,
         };
@@ -141,7 +180,10 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     if close != 0 {
         let inner = rest.get(end + 1..).unwrap_or_default();
         let length = inner.iter().take_while(|it| it.is_ascii_alphanumeric()).count();
-        if length > 0 && inner.get(length) == Some(&close) {
+        // Of `O1,3(S)` in a chart, the qualifier is none; of `W5(10)`, the index is no address.
+        let is_word = matches!(inner.first(), Some(b'W' | b'w' | b'0'..=b'9' | b'C' | b'c' | b'B' | b'b'))
+            && inner.get(length.wrapping_sub(1)).is_some_and(u8::is_ascii_digit);
+        if (close == b']' || is_word) && length > 0 && inner.get(length) == Some(&close) {
             end += length + 2;
         }
     }
@@ -150,7 +192,7 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 }
 
 /// The tokens of the content of a block. Their lengths add up to the text, for every text.
-pub fn lex(text: &str) -> Vec<Token> {
+pub(super) fn lex(text: &str) -> Vec<Token> {
     let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4 + 1);
     let mut lexer = Lexeme::lexer(text);
     while let Some(lexeme) = lexer.next() {
@@ -199,7 +241,16 @@ mod tests {
         assert_eq!(kinds("W5 (W1)"), [ObjectAddress, LParen, ObjectAddress, RParen]);
         assert_eq!(kinds("W5()"), [ObjectAddress, LParen, RParen]);
         assert_eq!(kinds("B5x FCX DTA T"), [Ident, Ident, Ident, Ident]);
-        assert_eq!(kinds("W5:=3"), [ObjectAddress, Colon, Eq, Number]);
+        assert_eq!(kinds("W5:=3"), [ObjectAddress, Assign, Number]);
+        assert_eq!(kinds("(X1,X2)"), [LParen, ObjectAddress, Comma, ObjectAddress, RParen]);
+        assert_eq!(
+            kinds("O1,3(S) B5(N1)"),
+            [ObjectAddress, LParen, Ident, RParen, ObjectAddress, LParen, Ident, RParen]
+        );
+        assert_eq!(kinds("A1(N) E1,0 Q2.3"), [Ident, LParen, Ident, RParen, ObjectAddress, ObjectAddress]);
+        assert_eq!(kinds("N1 P0 PL7 EVT3 AB5 SR1"), [Ident; 6]);
+        assert_eq!(kinds("'Chart' MAST'PRL'"), [CharString, Ident, CharString]);
+        assert_eq!(kinds("(*PHRASE*) B1 (*END_PHRASE*) ..."), [SentenceStart, ObjectAddress, SentenceEnd, Elision]);
         assert_eq!(kinds("L10: %L999"), [LabelAddress, Colon, LabelAddress]);
     }
 

@@ -23,10 +23,16 @@ pub enum Counted {
     Monostables,
     Registers,
     Drums,
+    /// `FC` of PL7-2.
+    FastCounters,
+    /// `TXT` of PL7-2.
+    Texts,
+    /// `SW` of PL7-2, of which some controllers have none.
+    SystemWords,
 }
 
 impl Counted {
-    const ALL: [Self; 13] = [
+    const ALL: [Self; 16] = [
         Self::Bits,
         Self::Words,
         Self::Bytes,
@@ -40,13 +46,23 @@ impl Counted {
         Self::Monostables,
         Self::Registers,
         Self::Drums,
+        Self::FastCounters,
+        Self::Texts,
+        Self::SystemWords,
     ];
 
     /// Whether it is a timer, a counter or another function block, and not memory.
     pub const fn is_block(self) -> bool {
         matches!(
             self,
-            Self::Timers | Self::OldTimers | Self::Counters | Self::Monostables | Self::Registers | Self::Drums
+            Self::Timers
+                | Self::OldTimers
+                | Self::Counters
+                | Self::Monostables
+                | Self::Registers
+                | Self::Drums
+                | Self::FastCounters
+                | Self::Texts
         )
     }
 }

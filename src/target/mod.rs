@@ -143,7 +143,7 @@ impl Target {
     pub fn all_numbered(&self) -> &'static [Numbered] {
         match self.family {
             Family::Pl7 => pl7::NUMBERED,
-            Family::Pl72 => &[],
+            Family::Pl72 => pl72::NUMBERED,
             Family::Step7 => step7::NUMBERED,
         }
     }
@@ -163,10 +163,13 @@ impl Target {
         let (own, largest) = match self.controller {
             Some(Controller::Pl7(it)) => (it.count(what), pl7::largest_count(what)),
             Some(Controller::Step7(it)) => (it.count(what), step7::largest_count(what)),
-            Some(Controller::Pl72(..)) => (None, None),
+            Some(Controller::Pl72(controller, version)) => {
+                let model = pl72::Model { controller: Some(controller), version };
+                (model.numbered(what), pl72::Model::default().numbered(what))
+            }
             None => match self.family {
                 Family::Pl7 => (None, pl7::largest_count(what)),
-                Family::Pl72 => (None, None),
+                Family::Pl72 => (None, pl72::Model::default().numbered(what)),
                 Family::Step7 => (None, step7::largest_count(what)),
             },
         };
@@ -228,6 +231,9 @@ impl Target {
             (Family::Pl7, Counted::Timers | Counted::OldTimers | Counted::Counters | Counted::Monostables) => {
                 Some(pl7::PRESETS)
             }
+            (Family::Pl72, Counted::Timers | Counted::Counters | Counted::FastCounters | Counted::Monostables) => {
+                Some(pl72::PRESETS)
+            }
             (Family::Step7, Counted::Counters) => Some(step7::COUNTER_PRESETS),
             _ => None,
         }
@@ -240,8 +246,12 @@ impl Target {
 
     /// Lines of a rung, the most that any controller has when it is unknown.
     pub fn ladder_lines(&self) -> Option<Limit> {
-        let series = self.processor().map_or(pl7::Series::Premium, |it| it.series);
-        (self.family == Family::Pl7).then(|| series.ladder_lines())
+        let series = || self.processor().map_or(pl7::Series::Premium, |it| it.series);
+        match self.family {
+            Family::Pl7 => Some(series().ladder_lines()),
+            Family::Pl72 => Some(pl72::LADDER_LINES),
+            Family::Step7 => None,
+        }
     }
 
     /// What a chart may have at most.
@@ -263,7 +273,8 @@ impl Target {
     pub const fn chart_pages(&self) -> Option<(Limit, Limit, Limit)> {
         match self.family {
             Family::Pl7 => Some((pl7::CHART_PAGES, pl7::PAGE_LINES, pl7::PAGE_COLUMNS)),
-            Family::Pl72 | Family::Step7 => None,
+            Family::Pl72 => Some((pl72::CHART_PAGES, pl72::CHART_LINES, pl72::CHART_COLUMNS)),
+            Family::Step7 => None,
         }
     }
 

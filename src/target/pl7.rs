@@ -568,7 +568,7 @@ impl Processor {
             Counted::SystemBits => Some(self.system_bits),
             Counted::Steps => Some(self.chart_max.main_steps),
             Counted::MacroSteps => Some(self.chart_max.macro_steps),
-            Counted::Constants | Counted::Bytes => None,
+            Counted::Constants | Counted::Bytes | Counted::SystemWords | Counted::FastCounters | Counted::Texts => None,
             Counted::Timers
             | Counted::OldTimers
             | Counted::Counters

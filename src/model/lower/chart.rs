@@ -111,6 +111,7 @@ fn step_bit(pl7: &mut Pl7, name: &StepName, graph: Graph) -> Option<ObjectId> {
     let text = name.bit(graph);
     let object = match name {
         StepName::Symbol(_) => Object::symbol(&text),
+        _ if pl7.is_pl7_2() => object::pl72::parse(text.trim_start_matches('%')).ok()?.object,
         _ => object::pl7::parse(&text).ok()?,
     };
     Some(pl7.b.object(object))
@@ -385,7 +386,8 @@ impl<'t> Lowering<'t> {
 
     fn back_targets(&self, code: SyntaxNode<'_>) -> FxHashSet<SmolStr> {
         let text = self.text.get(std::ops::Range::<usize>::from(code.text_range())).unwrap_or_default();
-        pl7::back_targets(code, text)
+        let language = self.pl7.as_ref().map_or(Language::Pl7Gr7, |it| it.b.model.language);
+        pl7::back_targets(code, text, language)
     }
 
     /// Starts a piece of code that runs under a condition.
@@ -464,7 +466,7 @@ impl<'t> Lowering<'t> {
             let Some(pl7) = &mut self.pl7 else { return };
             let text = it.target.text();
             let object = match it.target.kind() {
-                SyntaxKind::ObjectAddress => match object::pl7::parse(text) {
+                SyntaxKind::ObjectAddress => match pl7.address(text) {
                     Ok(object) => object,
                     Err(error) => {
                         pl7.address_error(error, it.target.text_range(), text);

@@ -27,7 +27,7 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitMod
         || is_bare_receptivity(root);
     let mut pl7 = Pl7::new(root, entity, Language::Pl7Il);
     chart::enter_piece(&mut pl7);
-    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    pl7.b.set_back_targets(pl7::back_targets(root, text, Language::Pl7Il));
     let all = ast::Root::cast(root).into_iter().flat_map(ast::Root::sentences);
     sentences(pl7, all, tests_only).0.b.finish()
 }

@@ -1,30 +1,37 @@
-//! PL7 ladder to the model.
+//! Ladder of PL7 and PL7-2 to the model.
 //!
-//! In each connected network the controller takes the state of the contacts, then executes functions, blocks and
+//! In PL7, in each connected network the controller takes the state of the contacts, then executes functions, blocks and
 //! subroutines, then writes the coils, then leaves (PL7:2874-2884). A coil is therefore not seen by a contact of its own
 //! network.
+//!
+//! PL7-2 scans a network column by column, and executes a block when it meets the left end of it (PL72:626-630). The coils
+//! are in the last column. That the jumps of a network are taken behind its coils is assumed.
 
 use rowan::TextRange;
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, ToSmolStr as _};
 
 use super::pl7::{self, Kind, Pl7};
+use super::pl72;
+use super::work::Elements;
 use crate::model::UnitModel;
 use crate::model::entity::{Entity, Part};
 use crate::model::expr::{self, ExprId, Exprs, ObjectId};
-use crate::model::ladder::{Flaw, Grid, Placed, Wire, block_of};
+use crate::model::ladder::{BlockShape, Flaw, Grid, Layout, Placed, Wire};
 use crate::model::object::{self, Class, Object};
+use crate::model::symbols::{Remark, RemarkKind};
 use crate::model::unit::{Actual, Given, Leave, Mode, OddityKind, Pin, Slot, StatementKind};
+use crate::model::work::{CodeKind, Network};
 use crate::syntax::pl7::ast::{self, Expr, Stmt};
 use crate::syntax::pl7::ladder_words::Element;
-use crate::syntax::{AstNode as _, Language, SyntaxNode};
+use crate::syntax::{AstNode as _, Language, SyntaxKind, SyntaxNode};
 
-pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
+pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Language) -> UnitModel {
     let is_transition = matches!(&entity, Entity::Pl7 { part: Part::Chart(rest), .. } if rest.contains("-->"))
         || is_bare_receptivity(root);
-    let mut pl7 = Pl7::new(root, entity, Language::Pl7Ld);
+    let mut pl7 = Pl7::new(root, entity, language);
     super::chart::enter_piece(&mut pl7);
-    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    pl7.b.set_back_targets(pl7::back_targets(root, text, language));
     let code = ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs);
     let (mut pl7, receptivity) = rungs(pl7, code, is_transition);
     if let Some(condition) = receptivity {
@@ -39,7 +46,16 @@ pub(super) fn rungs<'t>(
     rungs: impl IntoIterator<Item = ast::Rung<'t>>,
     is_transition: bool,
 ) -> (Pl7, Option<ExprId>) {
-    let mut lowering = Lowering { pl7, is_transition, receptivity: None };
+    let layout = Layout::of(pl7.b.model.language);
+    let is_section =
+        !pl7.b.model.language.is_chart() && !matches!(pl7.b.model.entity, Entity::Pl7 { part: Part::Chart(_), .. });
+    let kind = match is_transition {
+        true => CodeKind::Receptivity,
+        false if is_section => CodeKind::Section,
+        false => CodeKind::Action,
+    };
+    let piece = pl7.b.model.networks.last().map_or(0, |it| it.piece + 1);
+    let mut lowering = Lowering { pl7, layout, is_transition, piece, kind, receptivity: None };
     for rung in rungs {
         lowering.rung(rung);
     }
@@ -58,7 +74,11 @@ fn is_bare_receptivity(root: SyntaxNode<'_>) -> bool {
 
 struct Lowering {
     pl7: Pl7,
+    layout: Layout,
     is_transition: bool,
+    /// Of the networks of PL7-2.
+    piece: u32,
+    kind: CodeKind,
     /// What the hash coils have taken.
     receptivity: Option<ExprId>,
 }
@@ -85,11 +105,30 @@ struct Use {
 impl Lowering {
     fn rung(&mut self, rung: ast::Rung<'_>) {
         self.pl7.b.next_network();
+        let marks = self.marks();
         if let Some(label) = rung.label() {
             self.pl7.label(&label);
         }
-        let grid = Grid::new(rung);
-        for (flaw, range, related) in grid.flaws() {
+        let mut length = 0;
+        if self.layout == Layout::Pl72 {
+            let comment = rung.syntax().tokens().find(|it| it.kind() == SyntaxKind::Comment);
+            // What speaks to the linter is no text of the program.
+            if let Some(it) = comment.filter(|it| !it.text().contains("plclint:")) {
+                let remark = Remark::new(RemarkKind::Network, it.text(), it.text_range());
+                length = remark.characters;
+                self.pl7.b.model.remarks.push(remark);
+            }
+        }
+        let grid = Grid::new(rung, self.layout);
+        // The power at the end of a receptivity of PL7-2 is what the transition takes.
+        let is_open = self.layout == Layout::Pl72 && self.is_transition;
+        let ends = |range: TextRange| {
+            let last = self.layout.columns() - 1;
+            is_open && grid.placed.iter().any(|it| it.range() == range && it.end() >= last)
+        };
+        let is_end = |flaw: Flaw, range: TextRange| flaw == Flaw::LeadsNowhere && ends(range);
+        let flaws: Vec<_> = grid.flaws().into_iter().filter(|it| !is_end(it.0, it.1)).collect();
+        for (flaw, range, related) in flaws {
             self.flaw(flaw, range).related.extend(related.map(|it| (it, "this wire goes round it")));
         }
         let networks = grid.networks();
@@ -105,6 +144,25 @@ impl Lowering {
         for it in &grid.placed {
             self.allowed_in_transition(it);
         }
+        if self.layout == Layout::Pl72 {
+            let Elements { listed, unlisted } = Elements::of(rung);
+            let ends = self.marks();
+            self.pl7.b.model.networks.push(Network {
+                kind: self.kind,
+                piece: self.piece,
+                elements: listed,
+                unlisted,
+                comment: length,
+                labels: marks.0..ends.0,
+                jumps: marks.1..ends.1,
+            });
+        }
+    }
+
+    /// Labels and jumps of the unit so far.
+    fn marks(&self) -> (u32, u32) {
+        let model = &self.pl7.b.model;
+        (super::builder::index(model.labels.len()), super::builder::index(model.jumps.len()))
     }
 
     fn flaw(&mut self, flaw: Flaw, range: TextRange) -> &mut crate::model::unit::Oddity {
@@ -120,6 +178,9 @@ impl Lowering {
         contacts: &mut Vec<Use>,
         coils: &mut Vec<Use>,
     ) {
+        if self.layout == Layout::Pl72 {
+            return self.columns(grid, elements, run);
+        }
         for &index in elements {
             let it = &grid.placed[index];
             if !matches!(it.element, Some(Element::HLink | Element::ShortCircuit)) {
@@ -144,11 +205,44 @@ impl Lowering {
         }
     }
 
+    /// A network of PL7-2, whose elements come in the order in which they are met.
+    fn columns(&mut self, grid: &Grid<'_>, elements: &[usize], run: &mut Run) {
+        for &index in elements {
+            let it = &grid.placed[index];
+            if !matches!(it.element, Some(Element::HLink | Element::ShortCircuit)) {
+                self.pl7.b.instruction(it.range());
+            }
+            if let Some(value) = self.test(it, |_, _| ()) {
+                run.tests.insert(index, value);
+            }
+            self.conduct(grid, index, run);
+            self.coil(it, run.at(it));
+        }
+        for &index in elements {
+            let it = &grid.placed[index];
+            self.leave(it, run.at(it));
+            if self.is_transition && it.end() + 1 >= self.layout.columns() {
+                for &wire in it.outputs.iter().filter(|it| !grid.is_used(**it)) {
+                    self.take(run.power[Grid::index(wire)]);
+                }
+            }
+        }
+    }
+
+    /// What lets the transition be crossed.
+    fn take(&mut self, when: ExprId) {
+        self.receptivity = Some(match self.receptivity {
+            Some(other) => self.pl7.b.exprs().or(other, when),
+            None => when,
+        });
+    }
+
     /// State of a contact or comparison.
     fn test(&mut self, it: &Placed<'_>, mut contact: impl FnMut(ObjectId, TextRange)) -> Option<ExprId> {
         let element = it.element?;
         if element == Element::Compare {
             return Some(match it.cell.comparison() {
+                Some(Expr::Bin(expr)) if self.layout == Layout::Pl72 => self.pl7.word_comparison(&expr),
                 Some(expr) => match self.pl7.expr(&expr) {
                     (_, Kind::Number | Kind::Float) => {
                         let message = "a comparison block takes a comparison, not a number".to_owned();
@@ -228,24 +322,31 @@ impl Lowering {
     }
 
     fn block(&mut self, grid: &Grid<'_>, it: &Placed<'_>, run: &mut Run) {
+        if let Some(shape) = self.layout.block_of(it.cell).filter(|it| it.letters().is_empty()) {
+            return self.clock(grid, it, shape, run);
+        }
         let place = it.cell.operand().and_then(|it| self.pl7.place(&it));
         let is_block = place.is_some_and(|(object, _)| self.pl7.b.model.object(object).class == Class::Block);
-        match (place, block_of(it.cell)) {
+        match (place, self.layout.block_of(it.cell)) {
             (Some((object, at)), Some(block)) if is_block => {
                 let mut is_driven = false;
-                for (&wire, name) in it.inputs.iter().zip(block.inputs) {
+                for (&wire, name) in it.inputs.iter().zip(block.inputs()) {
                     // An input without a wire is 0 (PL7:2813).
                     if grid.is_fed(wire) {
                         is_driven = true;
                         let when = run.power[Grid::index(wire)];
-                        self.pl7.b.drive(object, pl7::pin(block.letters, name), when, None, at, it.range());
+                        let pin = match self.layout {
+                            Layout::Pl7 => pl7::pin(block.letters(), name),
+                            Layout::Pl72 => pl72::pin(block.letters(), name),
+                        };
+                        self.pl7.b.drive(object, pin, when, None, at, it.range());
                     }
                 }
                 if !is_driven {
                     self.pl7.b.touch(object, Mode::Drive(Pin::Whole), at);
                 }
                 for (row, &wire) in it.outputs.iter().enumerate().filter(|it| grid.is_used(*it.1)) {
-                    let value = match block.outputs.get(row) {
+                    let value = match block.outputs().get(row) {
                         Some(name) => self.output(object, name, at),
                         None => Exprs::FALSE,
                     };
@@ -271,9 +372,34 @@ impl Lowering {
         }
     }
 
+    /// The clock of PL7-2, which has no objects: what it says is known to nobody.
+    fn clock(&mut self, grid: &Grid<'_>, it: &Placed<'_>, shape: BlockShape, run: &mut Run) {
+        if let Some(Expr::Call(call)) = it.cell.operand() {
+            for parameter in call.operands() {
+                self.pl7.expr(&parameter);
+            }
+        }
+        for (_, &wire) in shape.outputs().iter().zip(&it.outputs).filter(|it| grid.is_used(*it.1)) {
+            let value = self.pl7.b.exprs().opaque();
+            run.join(&mut self.pl7, wire, value);
+        }
+    }
+
     fn output(&mut self, object: ObjectId, name: &str, at: TextRange) -> ExprId {
-        let address = format!("{}.{name}", self.pl7.b.model.object(object).text);
-        let output = object::pl7::parse(&address).unwrap_or_else(|_| Object::symbol(&address));
+        let block = &self.pl7.b.model.object(object).text;
+        let (address, parsed) = match self.layout {
+            Layout::Pl7 => {
+                let address = format!("{block}.{name}");
+                let parsed = object::pl7::parse(&address);
+                (address, parsed)
+            }
+            Layout::Pl72 => {
+                let address = format!("{block},{name}");
+                let parsed = object::pl72::parse(&address).map(|it| it.object);
+                (address, parsed)
+            }
+        };
+        let output = parsed.unwrap_or_else(|_| Object::symbol(&address));
         let output = self.pl7.b.object(output);
         self.pl7.read(output, at)
     }
@@ -315,6 +441,7 @@ impl Lowering {
         self.pl7.b.enter(inside, None);
         for statement in it.cell.operations() {
             match statement {
+                Stmt::Assign(it) if self.layout == Layout::Pl72 => self.pl7.word_operation(&it),
                 Stmt::Assign(it) => self.pl7.assignment(&it),
                 Stmt::Call(it) => self.pl7.call_stmt(&it),
                 Stmt::Expr(it) => {
@@ -334,13 +461,10 @@ impl Lowering {
         let element = it.element?;
         match element {
             Element::HashCoil => {
-                self.receptivity = Some(match self.receptivity {
-                    Some(other) => self.pl7.b.exprs().or(other, when),
-                    None => when,
-                });
+                self.take(when);
                 return None;
             }
-            Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil => {}
+            Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil | Element::SaveCoil => {}
             _ => return None,
         }
         let operand = it.cell.operand()?;
@@ -365,7 +489,7 @@ impl Lowering {
             }
             _ => self.pl7.b.assign(object, false, when, at, range),
         }
-        matches!(element, Element::Coil | Element::NotCoil).then_some((object, at))
+        matches!(element, Element::Coil | Element::NotCoil | Element::SaveCoil).then_some((object, at))
     }
 
     fn leave(&mut self, it: &Placed<'_>, when: ExprId) {
@@ -413,11 +537,16 @@ impl Lowering {
 
     fn allowed_in_transition(&mut self, it: &Placed<'_>) {
         let Some(element) = it.element else { return };
-        let is_coil = matches!(element, Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil);
+        let is_coil = matches!(
+            element,
+            Element::Coil | Element::NotCoil | Element::SetCoil | Element::ResetCoil | Element::SaveCoil
+        );
         let flaw = match element {
             Element::HashCoil if !self.is_transition => Flaw::HashOutsideTransition,
             _ if !self.is_transition || element == Element::HashCoil => return,
             _ if is_coil => Flaw::CoilInTransition,
+            // All of the test zone may be used in PL7-2 (PL72:1484).
+            Element::Block if self.layout == Layout::Pl72 => return,
             Element::Block => Flaw::ElementInTransition,
             _ if element.is_action() => Flaw::ElementInTransition,
             _ => return,
@@ -447,7 +576,7 @@ mod tests {
     fn part(rungs: &str, part: Part) -> UnitModel {
         let parse = crate::syntax::pl7::parse_ld(rungs);
         assert_eq!(parse.errors(), [], "{rungs}");
-        lower(parse.syntax(), rungs, Entity::Pl7 { task: Task::Mast, section: None, part })
+        lower(parse.syntax(), rungs, Entity::Pl7 { task: Task::Mast, section: None, part }, Language::Pl7Ld)
     }
 
     fn model(rows: &str) -> UnitModel {

@@ -8,7 +8,9 @@ mod exchange;
 mod il;
 mod ladder;
 mod pl7;
+mod pl72;
 mod st;
+mod work;
 mod xref;
 
 use super::UnitModel;
@@ -24,8 +26,10 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => exchange::lower(root, text, entity),
         Language::Pl7Xref => xref::lower(root, entity),
-        Language::Pl7Ld => ladder::lower(root, text, entity),
-        Language::Pl7Gr7 | Language::Sfc => chart::lower(root, text, entity, language),
+        Language::Pl7Ld | Language::Pl72Ld => ladder::lower(root, text, entity, language),
+        Language::Pl7Gr7 | Language::Sfc | Language::Pl72Gr7 | Language::Pl72Sfc => {
+            chart::lower(root, text, entity, language)
+        }
     }
 }
 

@@ -69,6 +69,16 @@ impl Pl7 {
         pl7
     }
 
+    /// Whether operands are those of PL7-2.
+    pub(super) fn is_pl7_2(&self) -> bool {
+        self.b.model.language.is_pl7_2()
+    }
+
+    /// A direct object, as an address without index names it.
+    pub(super) fn address(&self, text: &str) -> Result<Object, object::AddressError> {
+        if self.is_pl7_2() { object::pl72::parse(text).map(|it| it.object) } else { object::pl7::parse(text) }
+    }
+
     pub(super) fn address_error(&mut self, error: object::AddressError, range: TextRange, text: &str) -> ObjectId {
         self.b.oddity(OddityKind::Address(error), range, text);
         self.b.object(Object {
@@ -86,6 +96,9 @@ impl Pl7 {
     pub(super) fn object_ref(&mut self, it: &ast::ObjectRef) -> (ObjectId, TextRange) {
         let range = it.syntax().text_range();
         let address = it.address();
+        if self.is_pl7_2() {
+            return self.word_object(&address, range);
+        }
         let index = if it.syntax().is_leaf() { None } else { it.index() };
         if index.is_none()
             && let Some(&id) = self.b.model.addresses.get(&*address)
@@ -141,8 +154,13 @@ impl Pl7 {
             self.index(index);
         }
         let own = dfb::object(&self.items, &path, indexed.is_some());
+        if self.is_pl7_2()
+            && let Some(error) = super::pl72::mistaken_name(&path)
+        {
+            return (self.address_error(error, range, &path), range);
+        }
         if own.is_none()
-            && let Some(suggestion) = object::pl7::suggest(&path)
+            && let Some(suggestion) = object::pl7::suggest(&path).filter(|_| !self.is_pl7_2())
         {
             let message = format!("`{path}` lacks its percent sign");
             let error =
@@ -197,7 +215,12 @@ impl Pl7 {
     pub(super) fn literal(&mut self, it: &ast::Literal) -> (ExprId, Kind) {
         let Some(token) = it.token() else { return (self.b.exprs().opaque(), Kind::Unknown) };
         let range = token.text_range();
-        match literal::parse_pl7(token.text()) {
+        let value = if self.is_pl7_2() && token.kind() != SyntaxKind::Ident {
+            literal::parse_pl72(token.text())
+        } else {
+            literal::parse_pl7(token.text())
+        };
+        match value {
             Ok(Value::Bool(value)) => (Exprs::bool(value), Kind::Bit),
             Ok(Value::Int { value, .. }) => (self.b.exprs().int(value), Kind::Number),
             Ok(Value::Real(value)) => (self.b.exprs().float(value), Kind::Float),
@@ -622,11 +645,11 @@ pub(super) fn pin(block: &str, input: &str) -> Pin {
 }
 
 /// Labels that a jump below them goes to, for all languages.
-pub(super) fn back_targets(root: SyntaxNode<'_>, text: &str) -> rustc_hash::FxHashSet<SmolStr> {
+pub(super) fn back_targets(root: SyntaxNode<'_>, text: &str, language: Language) -> rustc_hash::FxHashSet<SmolStr> {
     let mut labels = rustc_hash::FxHashSet::default();
     let mut back = rustc_hash::FxHashSet::default();
-    // Most sections have no label at all.
-    if !text.contains("%L") && !text.contains("%l") {
+    // Most sections have no label at all; those of PL7-2, whose labels may lack the percent sign, have many.
+    if !language.is_pl7_2() && !text.contains("%L") && !text.contains("%l") {
         return back;
     }
     let mut in_definition = false;

@@ -17,7 +17,7 @@ use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity) -> UnitModel {
     let mut pl7 = Pl7::new(root, entity, Language::Pl7St);
     chart::enter_piece(&mut pl7);
-    pl7.b.set_back_targets(pl7::back_targets(root, text));
+    pl7.b.set_back_targets(pl7::back_targets(root, text, Language::Pl7St));
     let all = ast::Root::cast(root).into_iter().flat_map(ast::Root::sentences);
     sentences(pl7, all).0.b.finish()
 }

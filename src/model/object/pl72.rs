@@ -32,7 +32,8 @@ pub struct Address {
     pub index: Option<Object>,
 }
 
-/// Reads an address without blanks, in either case: `I0,05`, `W5,A`, `T0,P`, `B5[10]`, `W0[60]`, `W5(W10)`.
+/// Reads an address without blanks, in either case: `I0,05`, `W5,A`, `T0,P`, `B5[10]`, `W0[60]`, `W5(W10)`. The percent
+/// sign of PL7 may stand before it, except where PL7 means something else by the rest: `%M5` is a bit there.
 ///
 /// # Errors
 /// [`AddressErrorKind::Malformed`] with the nearest valid form where there is one; [`AddressErrorKind::OutOfRange`] for
@@ -59,6 +60,23 @@ pub fn parse(address: &str) -> Result<Address, AddressError> {
 pub fn suggest(name: &str) -> Option<String> {
     let upper = name.to_ascii_uppercase();
     if read(&upper).is_ok() { None } else { nearest(&upper) }
+}
+
+/// Whether an object is the preset of a function block: `T0,P`.
+pub fn is_preset(object: &Object) -> bool {
+    let block = match object.footprint.area {
+        Area::Block(symbol, _) => BLOCKS.iter().find(|it| it.symbol == symbol),
+        _ => None,
+    };
+    let is_own = |it: &Item| it.start == object.footprint.start && it.class == object.class && it.name == "P";
+    block.is_some_and(|it| it.items.iter().any(is_own))
+}
+
+/// Whether an object is the number of the step that a drum is in: `D1,S`.
+pub fn is_drum_step(object: &Object) -> bool {
+    matches!(object.footprint.area, Area::Block("D", _))
+        && object.class == Class::BlockWord
+        && object.footprint.start == 0
 }
 
 /// Where a bit or word of a module is.
@@ -256,6 +274,9 @@ type Indexed<'a> = (Place, Option<(&'a str, Place)>);
 
 /// Reads an address in upper case. The index comes with its text.
 fn read(text: &str) -> Result<Indexed<'_>, AddressError> {
+    let is_bit_of_pl7 =
+        !text.contains(',') && matches!(text.as_bytes(), [b'%', b'M' | b'S', digit, ..] if digit.is_ascii_digit());
+    let text = if is_bit_of_pl7 { text } else { text.strip_prefix('%').unwrap_or(text) };
     if !text.is_ascii() {
         return Err(malformed("an address has neither accents nor other special characters (PL72:253-310)"));
     }
@@ -559,11 +580,12 @@ fn nearest(upper: &str) -> Option<String> {
 fn slips(text: &str) -> Vec<String> {
     // PL72:1639 prints `I0.00`, PL72:884-896 blanks after the comma.
     let compact = text.replace([' ', '\t', '\u{a0}'], "").replace(['.', ';'], ",");
-    let mut out = vec![compact.trim_end_matches([',', ':']).to_owned()];
+    let mut out = Vec::new();
     let text = compact.as_str();
     if let Some(pl7) = text.strip_prefix('%') {
         out.extend(from_pl7(pl7));
     }
+    out.push(compact.trim_end_matches([',', ':']).trim_start_matches('%').to_owned());
     let end = text.bytes().position(|it| !it.is_ascii_uppercase()).unwrap_or(text.len());
     let (letters, tail) = text.split_at(end);
     // Letters of PL7 and of the other vendor.
@@ -976,6 +998,17 @@ mod tests {
             assert_eq!(suggest(text), error.suggestion, "{text}");
         }
         assert_eq!((suggest("W5"), suggest("W5(W1)")), (None, None));
+    }
+
+    #[test]
+    fn a_percent_sign_may_stand_before_an_address() {
+        for text in ["B5", "I0,05", "W5(W10)", "X3", "X3,V", "T0,D", "SY21", "T0", "M2,R", "S1,0"] {
+            let (bare, signed) = (object(text), object(&format!("%{text}")));
+            assert_eq!((bare.footprint, bare.rights), (signed.footprint, signed.rights), "{text}");
+        }
+        // A bit of PL7, no monostable.
+        assert_eq!(error("%M5").suggestion.as_deref(), Some("B5"));
+        assert_eq!(error("%S1").suggestion.as_deref(), Some("SY1"));
     }
 
     #[test]

@@ -398,23 +398,36 @@ impl<'t> StmtList<'t> {
 
 impl<'t> AssignStmt<'t> {
     pub fn target(self) -> Option<Expr<'t>> {
-        self.0
-            .children_with_tokens()
-            .take_while(|it| !matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
-            .find_map(|it| Expr::cast(it.into_node()?))
+        if self.is_transfer() { self.behind() } else { self.before() }
     }
 
-    /// `:=`, or the `=` that stands in its place.
+    /// `:=`, or the `=` that stands in its place; `->` of PL7-2.
     pub fn operator(self) -> Option<SyntaxToken<'t>> {
-        self.0.tokens().find(|it| matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
+        self.0.tokens().find(|it| is_assignment_sign(it.kind()))
     }
 
     pub fn value(self) -> Option<Expr<'t>> {
-        self.0
-            .children_with_tokens()
-            .skip_while(|it| !matches!(it.kind(), SyntaxKind::Assign | SyntaxKind::Eq))
-            .find_map(|it| Expr::cast(it.into_node()?))
+        if self.is_transfer() { self.before() } else { self.behind() }
     }
+
+    /// Whether the target stands last: `127 -> W10`.
+    fn is_transfer(self) -> bool {
+        self.operator().is_some_and(|it| it.kind() == SyntaxKind::Arrow)
+    }
+
+    fn before(self) -> Option<Expr<'t>> {
+        let elements = self.0.children_with_tokens().take_while(|it| !is_assignment_sign(it.kind()));
+        elements.filter_map(SyntaxElement::into_node).find_map(Expr::cast)
+    }
+
+    fn behind(self) -> Option<Expr<'t>> {
+        let elements = self.0.children_with_tokens().skip_while(|it| !is_assignment_sign(it.kind()));
+        elements.filter_map(SyntaxElement::into_node).find_map(Expr::cast)
+    }
+}
+
+fn is_assignment_sign(kind: SyntaxKind) -> bool {
+    matches!(kind, SyntaxKind::Assign | SyntaxKind::Eq | SyntaxKind::Arrow)
 }
 
 /// Arguments in order, one entry a position; `None` where a position is empty.
@@ -645,6 +658,11 @@ impl<'t> CallExpr<'t> {
     /// Arguments, one entry a position; `None` where a position is empty.
     pub fn arguments(self) -> Vec<Option<Expr<'t>>> {
         arguments(self.0)
+    }
+
+    /// Operands without parentheses, as operations of PL7-2 have them: the bits and the word of `SLC 3 W1`.
+    pub fn operands(self) -> AstChildren<'t, Expr<'t>> {
+        self.children()
     }
 }
 

@@ -6,7 +6,7 @@ use SyntaxKind::{
     RParen, Semicolon, Slash, Star, TypedConstant, UnaryExpr,
 };
 
-use super::grammar::{Dialect, Grammar};
+use super::grammar::{Code, Dialect, Grammar};
 use super::instructions::IlOp;
 use super::word::Keyword;
 use crate::syntax::{Completed, SyntaxKind};
@@ -71,7 +71,7 @@ impl Grammar<'_, '_> {
     }
 
     /// Binding power of the operator at hand.
-    fn operator(&self) -> Option<u8> {
+    pub(super) fn operator(&self) -> Option<u8> {
         Some(match self.p.current()? {
             Plus | Minus => SUM,
             Star | Slash => PRODUCT,
@@ -198,6 +198,10 @@ impl Grammar<'_, '_> {
     /// become `ObjectAddress` tokens, so that together they say what one token usually does.
     pub(super) fn object(&mut self) -> Node {
         let m = self.p.start();
+        if self.state.code == Code::Pl72 {
+            self.word_address();
+            return Node { completed: self.p.complete(m, ObjectRef), height: 1 };
+        }
         if self.p.at(Percent) {
             self.p.bump_as(ObjectAddress);
             if self.p.at(Ident) && !self.p.newline_before() {

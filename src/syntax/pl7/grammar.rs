@@ -11,13 +11,20 @@ use super::dfb;
 use super::functions;
 use super::lexer::lex;
 use super::word::{self, Keyword};
-use crate::syntax::{MAX_DEPTH, Marker, Parse, Parser, SyntaxKind};
+use crate::syntax::{MAX_DEPTH, Marker, Parse, Parser, SyntaxKind, pl72};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dialect {
     Il,
     St,
     Ld,
+}
+
+/// Whose operands and operations the text has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Code {
+    Pl7,
+    Pl72,
 }
 
 /// How many control structures of each kind are open.
@@ -34,6 +41,7 @@ pub(super) struct State<'t> {
     /// The word that each significant token is: asked for often, told apart once.
     words: &'t [Option<Keyword>],
     pub(super) dialect: Dialect,
+    pub(super) code: Code,
     /// Whether the statement or instruction at hand has been reported already: one error each.
     pub(super) muted: bool,
     /// Whether an unclosed comment hides the rest of the unit: nothing is missing at its end then.
@@ -56,17 +64,20 @@ pub(super) struct Grammar<'p, 't> {
     pub(super) state: State<'t>,
 }
 
-pub(super) fn parse(text: &str, dialect: Dialect) -> Parse {
-    parse_with(text, dialect, false)
+pub(super) fn parse(text: &str, dialect: Dialect, code: Code) -> Parse {
+    parse_with(text, dialect, code, false)
 }
 
 /// Parses a chart, whose actions and receptivities say their own languages.
-pub(super) fn parse_chart(text: &str) -> Parse {
-    parse_with(text, Dialect::St, true)
+pub(super) fn parse_chart(text: &str, code: Code) -> Parse {
+    parse_with(text, Dialect::St, code, true)
 }
 
-fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
-    let tokens = lex(text);
+fn parse_with(text: &str, dialect: Dialect, code: Code, is_chart: bool) -> Parse {
+    let tokens = match code {
+        Code::Pl7 => lex(text),
+        Code::Pl72 => pl72::lex(text),
+    };
     let open_end = tokens.last().is_some_and(|it| it.kind == UnclosedComment);
     let mut parser = Parser::new(text, &tokens);
     let words: Vec<_> = (0..)
@@ -74,7 +85,7 @@ fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
         .map(|(n, kind)| if kind == Ident { Keyword::of(parser.nth_text(n)) } else { None })
         .map(|word| word.filter(|it| !it.is_of_ladder() || is_chart || dialect == Dialect::Ld))
         .collect();
-    let is_dfb = !is_chart && dfb::is_type(&parser);
+    let is_dfb = !is_chart && code == Code::Pl7 && dfb::is_type(&parser);
     let stops = if is_chart {
         chart::stops(&parser)
     } else if is_dfb {
@@ -85,6 +96,7 @@ fn parse_with(text: &str, dialect: Dialect, is_chart: bool) -> Parse {
     let state = State {
         words: &words,
         dialect,
+        code,
         muted: false,
         open_end,
         depth: 0,

@@ -8,7 +8,7 @@ use SyntaxKind::{
     RParen, Rung, RungRow, Semicolon,
 };
 
-use super::grammar::{Dialect, Grammar};
+use super::grammar::{Code, Dialect, Grammar};
 use super::ladder_words::{self, Shape};
 use super::word::{self, Keyword};
 use crate::syntax::SyntaxKind;
@@ -136,13 +136,29 @@ impl Grammar<'_, '_> {
             self.p.complete(m, Cell);
             return;
         };
+        match self.state.code {
+            Code::Pl7 if !word.element.is_of_pl7() => self.error(format!("PL7 has no `{}`", word.text)),
+            Code::Pl72 if !word.element.is_of_pl7_2() => self.error(format!("PL7-2 has no `{}`", word.text)),
+            _ => {}
+        }
         self.p.bump();
         match word.element.shape() {
             Shape::Comparison => {
-                self.expr();
+                match self.state.code {
+                    Code::Pl7 => {
+                        self.expr();
+                    }
+                    Code::Pl72 => self.word_comparison(),
+                }
                 self.end_block();
             }
-            Shape::Operation => self.operations(),
+            Shape::Operation => {
+                match self.state.code {
+                    Code::Pl7 => self.operations(),
+                    Code::Pl72 => self.word_operations(),
+                }
+                self.end_block();
+            }
             shape => self.cell_operand(shape),
         }
         self.p.complete(m, Cell);
@@ -239,11 +255,10 @@ impl Grammar<'_, '_> {
                 break;
             }
         }
-        self.end_block();
     }
 
     /// Whether the `;` at hand ends the row of a block that is not closed, rather than a statement in it.
-    fn at_row_end(&self) -> bool {
+    pub(super) fn at_row_end(&self) -> bool {
         self.p.nth(1).is_none()
             || matches!(self.nth_keyword(1), Some(Keyword::EndRung | Keyword::Rung))
             || self.is_cell_at(1)

@@ -51,6 +51,8 @@ pub enum Element {
     NotCoil,
     SetCoil,
     ResetCoil,
+    /// Coil of PL7-2 that keeps the state of its bit at a warm start (PL72:412).
+    SaveCoil,
     /// `(#)`: lets the transition be crossed (PL7:2741).
     HashCoil,
     Jump,
@@ -68,7 +70,8 @@ impl Element {
     pub fn shape(self) -> Shape {
         match self {
             Self::Open | Self::Closed | Self::Rising | Self::Falling => Shape::Object,
-            Self::Coil | Self::NotCoil | Self::SetCoil | Self::ResetCoil | Self::Block => Shape::Object,
+            Self::Coil | Self::NotCoil | Self::SetCoil | Self::ResetCoil => Shape::Object,
+            Self::SaveCoil | Self::Block => Shape::Object,
             Self::HLink | Self::ShortCircuit | Self::EmptyCell | Self::EmptyLine => Shape::Count,
             Self::VLink | Self::HashCoil | Self::Return | Self::Halt => Shape::Bare,
             Self::Jump => Shape::Label,
@@ -84,6 +87,16 @@ impl Element {
         matches!(self, Self::Open | Self::Closed | Self::Rising | Self::Falling | Self::Compare | Self::Block)
     }
 
+    /// Whether networks of PL7-2 have it. They have neither calls nor a way to stop (PL72:401-419).
+    pub fn is_of_pl7_2(self) -> bool {
+        !matches!(self, Self::Call | Self::Return | Self::Halt)
+    }
+
+    /// Whether rungs of PL7 have it.
+    pub fn is_of_pl7(self) -> bool {
+        self != Self::SaveCoil
+    }
+
     /// Whether it applies a result: belongs to the action zone (PL7:2783, 2825).
     pub fn is_action(self) -> bool {
         matches!(
@@ -92,6 +105,7 @@ impl Element {
                 | Self::NotCoil
                 | Self::SetCoil
                 | Self::ResetCoil
+                | Self::SaveCoil
                 | Self::HashCoil
                 | Self::Jump
                 | Self::Call
@@ -139,6 +153,8 @@ const WORDS: &[Word] = &[
     assumed("NOT_COIL", Element::NotCoil),
     assumed("SET_COIL", Element::SetCoil),
     assumed("RESET_COIL", Element::ResetCoil),
+    assumed("SAVE_COIL", Element::SaveCoil),
+    assumed("SAVED_COIL", Element::SaveCoil),
     seen("HASH_COIL", Element::HashCoil),
     assumed("JUMP_COIL", Element::Jump),
     assumed("CALL_COIL", Element::Call),

@@ -3,6 +3,8 @@
 //! One lexer, one expression grammar and one frame of sentences serve the first two. The tree is
 //! `Root > Sentence > (LabelDef | IlInstr | statement)*`, of ladder `Root > Rung > (LabelDef | RungRow > Cell)*`; [`ast`]
 //! gives it types.
+//!
+//! The networks and charts of PL7-2 are read by the same grammar, with a lexer, operands and operations of their own.
 
 pub mod ast;
 pub mod chart;
@@ -15,6 +17,7 @@ pub mod instructions;
 mod ladder;
 pub mod ladder_words;
 mod lexer;
+mod operation;
 mod st;
 mod word;
 
@@ -22,21 +25,21 @@ mod word;
 mod tests;
 
 use super::Parse;
-use grammar::Dialect;
+use grammar::{Code, Dialect};
 
 /// Parses one unit of instruction list. Total and linear for every text.
 pub fn parse_il(text: &str) -> Parse {
-    grammar::parse(text, Dialect::Il)
+    grammar::parse(text, Dialect::Il, Code::Pl7)
 }
 
 /// Parses one unit of ladder. Total and linear for every text.
 pub fn parse_ld(text: &str) -> Parse {
-    grammar::parse(text, Dialect::Ld)
+    grammar::parse(text, Dialect::Ld, Code::Pl7)
 }
 
 /// Parses one unit of structured text. Total and linear for every text.
 pub fn parse_st(text: &str) -> Parse {
-    grammar::parse(text, Dialect::St)
+    grammar::parse(text, Dialect::St, Code::Pl7)
 }
 
 /// Whether a word means something in the language, in any case: a keyword, an instruction, a function, a subroutine.
@@ -49,5 +52,15 @@ pub fn is_reserved(text: &str) -> bool {
 
 /// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
 pub fn parse_chart(text: &str) -> Parse {
-    grammar::parse_chart(text)
+    grammar::parse_chart(text, Code::Pl7)
+}
+
+/// Parses one unit of PL7-2 ladder. Total and linear for every text.
+pub fn parse_pl7_2_ld(text: &str) -> Parse {
+    grammar::parse(text, Dialect::Ld, Code::Pl72)
+}
+
+/// As [`parse_chart`], with the operands and operations of PL7-2.
+pub fn parse_pl7_2_chart(text: &str) -> Parse {
+    grammar::parse_chart(text, Code::Pl72)
 }

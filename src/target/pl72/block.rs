@@ -169,6 +169,20 @@ pub static BLOCKS: &[Block] = &[
     },
 ];
 
+/// The words for blocks without a number (PL72:490-494).
+pub const CLOCKS: [&str; 2] = ["WEEK", "YEAR"];
+
+/// The kind of block that an address or word names: `T0`, `FC`, `WEEK`. Of the two text blocks the complete one, whose pins
+/// start with those of the other.
+pub fn of_address(address: &str) -> Option<&'static Block> {
+    if CLOCKS.iter().any(|it| it.eq_ignore_ascii_case(address)) {
+        return BLOCKS.iter().find(|it| it.kind == BlockKind::Clock);
+    }
+    let letters = address.trim_start_matches('%').trim_end_matches(|it: char| it.is_ascii_digit());
+    let is_meant = |it: &&Block| it.symbol.is_some_and(|it| it.eq_ignore_ascii_case(letters));
+    BLOCKS.iter().filter(is_meant).find(|it| it.kind != BlockKind::SimpleText)
+}
+
 /// Presets of timers, counters and the fast counter (also PL72:748, PL72:799).
 pub const PRESETS: Range = Range::new(0, 9999, "PL72:668");
 /// Current values of counters and of the fast counter (also PL72:800).
@@ -301,6 +315,17 @@ mod tests {
             let counts = Series::ALL.map(|it| block.count(it).map(|it| it.value));
             assert_eq!(counts, [Some(micro), Some(others), Some(others)], "{symbol}");
         }
+    }
+
+    #[test]
+    fn blocks_are_found_by_their_address() {
+        let kind = |address| of_address(address).map(|it| it.kind);
+        assert_eq!(kind("T0"), Some(BlockKind::Timer));
+        assert_eq!(kind("%c30"), Some(BlockKind::Counter));
+        assert_eq!(kind("FC"), Some(BlockKind::FastCounter));
+        assert_eq!(kind("TXT7"), Some(BlockKind::CompleteText));
+        assert_eq!(kind("week"), Some(BlockKind::Clock));
+        assert_eq!((kind("W0"), kind(""), kind("T0,D"), kind("WEEK1")), (None, None, None, None));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Execution times and memory (PL72:1894-1976).
 
 use super::Series;
+use crate::target::Range;
 
 /// A time in nanoseconds: from `min` to `max`, and `each` for every unit of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,6 +112,13 @@ pub enum Element {
     Network,
 }
 
+impl Element {
+    /// The row of the element. The rows stand in the order of the elements.
+    pub fn row(self) -> Option<&'static InstructionCost> {
+        COSTS.get(self as usize)
+    }
+}
+
 /// A row of the two tables of elements.
 #[derive(Debug, PartialEq, Eq)]
 pub struct InstructionCost {
@@ -121,7 +129,7 @@ pub struct InstructionCost {
     pub tsx_27_47: Option<Cost>,
     /// In the memory of the program.
     pub bytes: u32,
-    /// Time beside it when the block does something.
+    /// Its time when the block does something.
     pub triggered: Option<Triggered>,
     pub source: &'static str,
 }
@@ -133,9 +141,17 @@ impl InstructionCost {
             Series::Tsx27 | Series::Tsx47 => self.tsx_27_47,
         }
     }
+
+    /// Longest time in nanoseconds; `quantity` is what the time of the element grows with, of blocks that do something too.
+    /// `None` where the controllers do not have it.
+    pub fn longest_ns(&self, series: Series, quantity: u32) -> Option<u64> {
+        let time = self.time(series)?.range(quantity).max_ns;
+        Some(self.triggered.map_or(time, |it| it.cost.range(quantity).max_ns.max(time)))
+    }
 }
 
-/// What a block takes when it has something to do: `base` and `each` for a quantity (PL72:1937).
+/// What a block takes when it has something to do: `base` and `each` for a quantity (PL72:1937). Whether instead of its usual
+/// time or beside it, the document does not say: instead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Triggered {
     pub cost: Cost,
@@ -151,6 +167,9 @@ const fn triggered(base_us: u32, each_us: u32, each: &'static str, when: &'stati
 const ORDER_BITS: Triggered = triggered(400, 40, "order bit", "the drum changes its step");
 const SIMPLE_TEXT: Triggered = triggered(220, 8, "active text block", "the block is active");
 const COMPLETE_TEXT: Triggered = triggered(270, 8, "active text block", "the block is active");
+
+/// Internal bits that are reached faster than the others (also PL72:1950).
+pub const NEAR_BITS: Range = Range::new(0, 127, "PL72:1923");
 
 /// For the comments of networks: one byte a character (PL72:1972-1974).
 pub const NETWORK_COMMENT_BYTES: u32 = 1;
@@ -240,6 +259,24 @@ pub enum SystemTask {
     WriteOutputs,
 }
 
+impl SystemTask {
+    /// What it takes at least, in nanoseconds; `None` where the controllers do not do it.
+    pub fn shortest_ns(self, series: Series) -> Option<u64> {
+        let row = SYSTEM_COSTS.iter().find(|it| it.task == self)?;
+        row.times[series.index()].map(|it| u64::from(it.min_ns))
+    }
+
+    /// The quickest exchange of a module with at least so many inputs and outputs.
+    pub fn module_ns(series: Series, least_inputs: u32, least_outputs: u32) -> Option<u64> {
+        let fits = |it: &&SystemCost| match it.task {
+            Self::Module { inputs, outputs } => inputs >= least_inputs && outputs >= least_outputs,
+            _ => false,
+        };
+        let times = SYSTEM_COSTS.iter().filter(fits).filter_map(|it| it.times[series.index()]);
+        times.map(|it| u64::from(it.min_ns)).min()
+    }
+}
+
 #[derive(Debug, PartialEq, Eq)]
 pub struct SystemCost {
     pub task: SystemTask,
@@ -302,7 +339,20 @@ mod tests {
     }
 
     #[test]
+    fn the_system_at_its_shortest() {
+        let module = |inputs, outputs| SystemTask::module_ns(Series::Tsx47, inputs, outputs);
+        assert_eq!(
+            (module(8, 0), module(9, 0), module(0, 16), module(3, 2)),
+            (Some(260_000), Some(400_000), Some(320_000), Some(340_000))
+        );
+        assert_eq!((module(33, 0), SystemTask::module_ns(Series::Tsx27, 12, 0)), (None, Some(400_000)));
+        assert_eq!(SystemTask::Controller.shortest_ns(Series::Tsx17), Some(700_000));
+        assert_eq!(SystemTask::ReadInputs.shortest_ns(Series::Tsx27), None);
+    }
+
+    #[test]
     fn each_element_has_one_row_in_order() {
+        assert!(COSTS.iter().all(|it| it.element.row() == Some(it)));
         assert!(COSTS.is_sorted_by(|a, b| a.element < b.element));
         assert_eq!(COSTS.len(), Element::Network as usize + 1);
         assert!(COSTS.iter().all(|it| it.bytes > 0 && (it.tsx_17.is_some() || it.tsx_27_47.is_some())));

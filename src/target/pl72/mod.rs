@@ -11,27 +11,27 @@ mod release;
 mod system;
 
 pub use block::{
-    BLOCKS, Block, BlockKind, CLOCK_DAYS, CLOCK_WORDS, COUNTER_VALUES, COUPLER_ADDRESSES, COUPLER_POSITIONS, DAYS,
-    DRUM_ORDER_BITS, DRUM_STEP, DRUM_STEPS, DRUM_TIME, FAST_TIMER_MAX_US, FAST_TIMER_MIN_US, MINUTES, PRESETS, Pin,
-    REGISTER_LENGTH, SIMPLE_TEXTS, STOP_CODES, SimpleText, TEXT_BYTES, TEXT_ERRORS, TEXT_KINDS, TEXT_LENGTH_SIMPLE,
-    TEXT_NUMBER_BYTES, TEXT_PARTNERS, TEXT_PARTNERS_PL7_2, TEXT_STATIONS, TEXT_TABLE_START, TIME_BASES_MS, TextError,
-    TextKind, UNI_TELWAY_ADDRESSES, UNI_TELWAY_REQUEST,
+    BLOCKS, Block, BlockKind, CLOCK_DAYS, CLOCK_WORDS, CLOCKS, COUNTER_VALUES, COUPLER_ADDRESSES, COUPLER_POSITIONS,
+    DAYS, DRUM_ORDER_BITS, DRUM_STEP, DRUM_STEPS, DRUM_TIME, FAST_TIMER_MAX_US, FAST_TIMER_MIN_US, MINUTES, PRESETS,
+    Pin, REGISTER_LENGTH, SIMPLE_TEXTS, STOP_CODES, SimpleText, TEXT_BYTES, TEXT_ERRORS, TEXT_KINDS,
+    TEXT_LENGTH_SIMPLE, TEXT_NUMBER_BYTES, TEXT_PARTNERS, TEXT_PARTNERS_PL7_2, TEXT_STATIONS, TEXT_TABLE_START,
+    TIME_BASES_MS, TextError, TextKind, UNI_TELWAY_ADDRESSES, UNI_TELWAY_REQUEST, of_address,
 };
 pub use channel::{
     Channels, EXTENSIONS_17, Misfit, Modules, RUN_STOP_INPUT, SECURITY_OUTPUT, UNITS_17, Unit17, UnitKind,
 };
 pub use cost::{
-    COSTS, Cost, Element, InstructionCost, NETWORK_COMMENT_BYTES, SKIPPED_OPERATION, SYSTEM_COSTS, SystemCost,
-    SystemTask, TimeRange, Triggered,
+    COSTS, Cost, Element, InstructionCost, NEAR_BITS, NETWORK_COMMENT_BYTES, SKIPPED_OPERATION, SYSTEM_COSTS,
+    SystemCost, SystemTask, TimeRange, Triggered,
 };
 pub use operation::{
-    ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARISONS, OPERATIONS, Operand, OperandRange,
-    Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
+    ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARE_COLUMNS, COMPARISONS, OPERATE_COLUMNS,
+    OPERATIONS, Operand, OperandRange, Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
 };
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
 
-use super::{Limit, Range};
+use super::{Counted, Limit, Numbered, Range};
 
 /// Watchdog of the master task, which is not periodic, in milliseconds (also PL72:534).
 pub const WATCHDOG_MS: Limit = Limit::new(150, "PL72:477");
@@ -45,6 +45,10 @@ pub const COMMENT_LENGTH: Limit = Limit::new(15, "PL72:601");
 /// Lines of a network, and contacts in a line of its test zone.
 pub const LADDER_LINES: Limit = Limit::new(4, "PL72:606");
 pub const LADDER_CONTACTS: Limit = Limit::new(9, "PL72:606");
+/// Columns of a network: those of contacts, then that of coils.
+pub const LADDER_COLUMNS: Limit = Limit::new(LADDER_CONTACTS.value + 1, "PL72:606-607");
+/// Columns of a block whose size the document does not tell: those of all others.
+pub const BLOCK_COLUMNS: Limit = Limit::new(2, "PL72:662");
 /// Coils of a network, one a line.
 pub const LADDER_COILS: Limit = Limit::new(4, "PL72:607");
 
@@ -65,6 +69,11 @@ pub const COLUMN_STEPS: Limit = Limit::new(6, "PL72:1342");
 pub const COLUMN_TRANSITIONS: Limit = Limit::new(6, "PL72:1343");
 pub const COLUMN_ORIGINS: Limit = Limit::new(1, "PL72:1344");
 pub const COLUMN_DESTINATIONS: Limit = Limit::new(1, "PL72:1345");
+/// Lines of a page: those of its origin connectors, steps, transitions and destination connectors.
+pub const CHART_LINES: Limit = Limit::new(
+    COLUMN_ORIGINS.value + COLUMN_STEPS.value + COLUMN_TRANSITIONS.value + COLUMN_DESTINATIONS.value,
+    "PL72:1341-1345",
+);
 /// Steps of a chart, the initial ones included.
 pub const STEPS: Limit = Limit::new(96, "PL72:1407");
 pub const STEP_NUMBERS: Range = Range::new(0, 95, "PL72:1409");
@@ -148,7 +157,8 @@ impl Series {
         }
     }
 
-    const fn index(self) -> usize {
+    /// Place in a row of the tables.
+    pub const fn index(self) -> usize {
         self as usize
     }
 }
@@ -233,6 +243,32 @@ pub static OBJECT_COUNTS: &[ObjectCount] = &[
     count(Kind::OutputWordBit, [32 * 16, 0, 32 * 16], "PL72:308-310"),
 ];
 
+const fn numbered(what: Counted, prefix: &'static str, plural: &'static str) -> Numbered {
+    Numbered { what, key: "", prefix, plural }
+}
+
+/// What the tables count, and programs number from 0. No configuration changes how many there are.
+pub static NUMBERED: &[Numbered] = &[
+    numbered(Counted::Bits, "B", "internal bits"),
+    numbered(Counted::Words, "W", "internal words"),
+    numbered(Counted::Constants, "CW", "constant words"),
+    numbered(Counted::SystemBits, "SY", "system bits"),
+    numbered(Counted::SystemWords, "SW", "system words"),
+    numbered(Counted::Steps, "X", "steps"),
+    numbered(Counted::Timers, "T", "timers"),
+    numbered(Counted::Counters, "C", "counters"),
+    numbered(Counted::FastCounters, "FC", "fast counters"),
+    numbered(Counted::Monostables, "M", "monostables"),
+    numbered(Counted::Registers, "R", "registers"),
+    numbered(Counted::Drums, "D", "drum controllers"),
+    numbered(Counted::Texts, "TXT", "text blocks"),
+];
+
+/// What the block of a symbol is counted as: `T`, `TXT`.
+pub fn block_of_symbol(symbol: &str) -> Option<Counted> {
+    NUMBERED.iter().find(|it| it.what.is_block() && it.prefix == symbol).map(|it| it.what)
+}
+
 /// A controller as a configuration names it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Controller {
@@ -308,6 +344,31 @@ impl Model {
         self.releases().any(|it| it.features.contains(&feature))
     }
 
+    /// The controller with its version, as a message names it; `None` when no controller is known.
+    pub fn name(&self) -> Option<String> {
+        let controller = self.controller?;
+        Some(self.version.map_or_else(|| controller.name.to_owned(), |it| format!("{} {it}", controller.name)))
+    }
+
+    /// The first version of the same controller that has a feature, later than its own.
+    pub fn first_with(&self, feature: Feature) -> Option<Version> {
+        let releases = self.controller?.releases.iter();
+        let first = releases.filter(|it| it.features.contains(&feature)).map(|it| it.from).min()?;
+        (first > Version::new(0, 0)).then_some(first)
+    }
+
+    /// Whether the complete text block has an item, `T` of `TXT0,T`, on the controller.
+    pub fn has_text_item(&self, item: &str) -> bool {
+        let Some(controller) = self.controller else { return true };
+        let mut kinds = TEXT_KINDS.iter().filter(|it| it.items.contains(&item)).peekable();
+        kinds.peek().is_none() || kinds.any(|it| it.controllers.contains(&controller.name))
+    }
+
+    /// Whether there is a clock (also PL72:618, PL72:1243).
+    pub fn has_clock(&self) -> bool {
+        self.series().any(|it| it == Series::Tsx17)
+    }
+
     /// What a feature needs beside the controller, where every release that has it needs something.
     pub fn condition(&self, feature: Feature) -> Option<Condition> {
         let mut found = None;
@@ -330,6 +391,20 @@ impl Model {
             let count = row.map(|it| self.series().map(|series| it.counts[series.index()]).max().unwrap_or(0));
             Limit::new(count.unwrap_or(0), row.map_or("", |it| it.source))
         })
+    }
+
+    /// How many there are of what programs number.
+    pub fn numbered(&self, what: Counted) -> Option<Limit> {
+        let kind = match what {
+            Counted::Bits => Kind::Bit,
+            Counted::Words => Kind::Word,
+            Counted::Constants => Kind::Constant,
+            Counted::SystemBits => Kind::SystemBit,
+            Counted::SystemWords => Kind::SystemWord,
+            Counted::Steps => Kind::Step,
+            _ => return self.block_count(NUMBERED.iter().find(|it| it.what == what)?.prefix),
+        };
+        Some(self.count(kind))
     }
 
     /// How many blocks there are of a symbol (`T`, `C`, `M`, `R`, `D`, `FC`, `TXT`).

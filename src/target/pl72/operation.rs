@@ -22,6 +22,10 @@ pub enum Operand {
     Words,
 }
 
+/// Columns that a comparison block takes, and an operation block, whose last one is the column of coils.
+pub const COMPARE_COLUMNS: Limit = Limit::new(2, "PL72:954");
+pub const OPERATE_COLUMNS: Limit = Limit::new(3, "PL72:973");
+
 /// Longest bit string (PL72:989).
 pub const BIT_STRING: Range = Range::new(1, 16, "PL72:989");
 

@@ -87,6 +87,22 @@ impl Feature {
         Self::Couplers,
     ];
 
+    /// What a program that needs it uses: completes "this is" or "`W5,A` is".
+    pub const fn describe(self) -> &'static str {
+        match self {
+            Self::PeriodicFastTask => "a fast task",
+            Self::EventFastTask => "a fast task that events start",
+            Self::WordBits => "a bit of a word",
+            Self::WordTables => "a table of words",
+            Self::AsciiConversion => "a conversion of characters",
+            Self::SimpleText => "of the simple text block",
+            Self::CompleteText => "of the complete text block",
+            Self::Network => "a word of the network",
+            Self::UniTelway => "of UNI-TELWAY",
+            Self::Couplers => "a word of an intelligent module",
+        }
+    }
+
     /// The row of the table.
     pub const fn source(self) -> &'static str {
         match self {

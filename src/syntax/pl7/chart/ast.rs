@@ -355,7 +355,7 @@ impl PageCell<'_> {
                 next_is_line = true;
             }
             let digits = text.trim_start_matches(|it: char| it.is_ascii_alphabetic());
-            if matches!(token.kind(), SyntaxKind::Ident | SyntaxKind::Number)
+            if !matches!(token.kind(), SyntaxKind::Comma | SyntaxKind::LParen | SyntaxKind::RParen)
                 && let Ok(number) = digits.parse()
             {
                 *(if next_is_line { &mut line } else { &mut column }) = Some(number);

@@ -216,7 +216,8 @@ impl<'t> Grammar<'_, 't> {
         let m = self.p.start();
         let start = self.p.position();
         self.p.bump();
-        while matches!(self.p.current(), Some(Ident | Number | Comma))
+        // `C4,L3` is an address and a label in PL7-2.
+        while matches!(self.p.current(), Some(Ident | Number | Comma | ObjectAddress | LabelAddress))
             && self.p.position() < start + 6
             && !self.at_stop()
         {
