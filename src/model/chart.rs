@@ -202,6 +202,8 @@ pub struct Action {
     /// `None` where steps run it in different ways, or the text does not say how.
     pub kind: Option<ActionKind>,
     pub language: Option<CodeLanguage>,
+    /// Condition under which its code starts.
+    pub path: ExprId,
     /// Places that its code names.
     pub anchors: Range<u32>,
     pub range: TextRange,
