@@ -703,8 +703,11 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
             let depends = |other: &usize| {
                 let other_crossing = &self.net.crossings[*other];
                 let shares = |a: &[u32], b: &[u32]| a.iter().any(|it| b.contains(it));
+                // One that fills what the other empties gives another result at once than one after the other.
                 shares(&crossing.from, &other_crossing.from)
                     || shares(&crossing.to, &other_crossing.to)
+                    || shares(&crossing.from, &other_crossing.to)
+                    || shares(&crossing.to, &other_crossing.from)
                     || shares(&self.net.supports[it], &self.net.supports[*other])
             };
             let (mut own, others): (Vec<_>, Vec<_>) =
@@ -789,5 +792,295 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
             }
         }
         after
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fmt::Write as _;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::model::entity::{Part as EntityPart, Task};
+    use crate::model::lower;
+    use crate::syntax::{self, Language};
+
+    fn with_study<T>(text: &str, look: impl FnOnce(&Study<'_, '_>) -> T) -> T {
+        let parse = syntax::parse(Language::Sfc, text);
+        assert_eq!(parse.errors(), [], "{text}");
+        let part = EntityPart::Chart(String::new().into());
+        let entity = crate::model::entity::Entity::Pl7 { task: Task::Mast, section: None, part };
+        let facts = UnitFacts::new(&lower::lower(parse.syntax(), text, entity, Language::Sfc));
+        let program = ProgramIndex::new(Family::Pl7, vec![&facts]);
+        look(&Study::all(&program)[0])
+    }
+
+    type Steps = BTreeSet<String>;
+
+    fn situations(study: &Study<'_, '_>, reached: &Reached, of: &Component) -> BTreeSet<Steps> {
+        let names = |it: &Situation| study.net.active(of, it).map(|it| study.net.name(it)).collect();
+        reached.situations.iter().map(names).collect()
+    }
+
+    /// Inputs, a word, and the chart's own step 1.
+    struct Inputs {
+        bits: [bool; 3],
+        word: i32,
+    }
+
+    const RECEPTIVITIES: [&str; 8] = [
+        "%I1.0",
+        "NOT %I1.0",
+        "%I1.1 AND NOT %I1.0",
+        "%MW0 > 2",
+        "%MW0 <= 2 AND %I1.2",
+        "TRUE",
+        "%X1",
+        "NOT %X1 AND %I1.2",
+    ];
+
+    fn holds(receptivity: usize, inputs: &Inputs, steps: &Steps) -> bool {
+        let ([a, b, c], one) = (inputs.bits, steps.contains("X1"));
+        match receptivity {
+            0 => a,
+            1 => !a,
+            2 => b && !a,
+            3 => inputs.word > 2,
+            4 => inputs.word <= 2 && c,
+            5 => true,
+            6 => one,
+            _ => !one && c,
+        }
+    }
+
+    #[derive(Debug, Clone)]
+    struct Drawn {
+        from: Vec<usize>,
+        to: Vec<usize>,
+        receptivity: usize,
+    }
+
+    fn drawn(steps: usize) -> impl Strategy<Value = Vec<Drawn>> {
+        let ends = || prop::collection::btree_set(0..steps, 1..=2).prop_map(|it| it.into_iter().collect::<Vec<_>>());
+        let one = (ends(), ends(), 0..RECEPTIVITIES.len());
+        prop::collection::vec(one.prop_map(|(from, to, receptivity)| Drawn { from, to, receptivity }), 1..=6)
+    }
+
+    fn text(steps: usize, drawn: &[Drawn]) -> String {
+        let mut text = String::new();
+        for step in 0..steps {
+            let word = if step == 0 { "INITIAL_STEP" } else { "STEP" };
+            writeln!(text, "{word} X{step} : END_STEP").unwrap();
+        }
+        let list =
+            |steps: &[usize]| format!("({})", steps.iter().map(|it| format!("X{it}")).collect::<Vec<_>>().join(","));
+        for it in drawn {
+            let (from, to) = (list(&it.from), list(&it.to));
+            writeln!(text, "TRANSITION FROM {from} TO {to} := {}; END_TRANSITION", RECEPTIVITIES[it.receptivity])
+                .unwrap();
+        }
+        text
+    }
+
+    /// All that scans with any inputs reach, and what of it no scan leaves.
+    fn simulate(drawn: &[Drawn]) -> (BTreeSet<Steps>, BTreeSet<Steps>) {
+        let name = |it: &usize| format!("X{it}");
+        let mut known: BTreeSet<Steps> = BTreeSet::new();
+        let mut dead: BTreeSet<Steps> = BTreeSet::new();
+        let mut open: Vec<Steps> = vec![["X0".to_owned()].into()];
+        while let Some(steps) = open.pop() {
+            if !known.insert(steps.clone()) {
+                continue;
+            }
+            let mut moves = false;
+            for state in 0..16 {
+                let bit = |n: i32| state >> n & 1 == 1;
+                let inputs = Inputs { bits: [bit(0), bit(1), bit(2)], word: if bit(3) { 5 } else { 0 } };
+                let crossed = |it: &&Drawn| {
+                    it.from.iter().all(|it| steps.contains(&name(it))) && holds(it.receptivity, &inputs, &steps)
+                };
+                let crossed: Vec<&Drawn> = drawn.iter().filter(crossed).collect();
+                moves |= !crossed.is_empty();
+                let off: Steps = crossed.iter().flat_map(|it| it.from.iter().map(name)).collect();
+                let on = crossed.iter().flat_map(|it| it.to.iter().map(name));
+                open.push(steps.difference(&off).cloned().chain(on).collect());
+            }
+            if !moves {
+                dead.insert(steps);
+            }
+        }
+        (known, dead)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        /// What is computed is what running the rules of evolution with all inputs reaches: nothing less, nothing more.
+        #[test]
+        fn as_the_rules_of_evolution_say(drawn in drawn(5)) {
+            let (known, dead) = simulate(&drawn);
+            with_study(&text(5, &drawn), |study| {
+                let part = study.parts.iter().find(|it| !it.component.initial.is_empty()).unwrap();
+                // The steps of another chart are taken as free.
+                let knows_step = part.component.nodes.iter().any(|it| study.net.name(*it) == "X1");
+                if part.all.is_partial || !knows_step && drawn.iter().any(|it| it.receptivity > 5) {
+                    return Ok(());
+                }
+                prop_assert_eq!(&situations(study, &part.all, &part.component), &known);
+                let found: BTreeSet<Steps> = part.all.dead.iter().map(|&it| {
+                    study.net.active(&part.component, &part.all.situations[it as usize]).map(|it| study.net.name(it)).collect()
+                }).collect();
+                prop_assert_eq!(found, dead);
+                Ok(())
+            })?;
+        }
+    }
+
+    /// A chart that is put together correctly.
+    #[derive(Debug, Clone)]
+    enum Block {
+        Step,
+        Sequence(Vec<Self>),
+        Alternatives(Vec<Self>),
+        Parallel(Vec<Self>),
+    }
+
+    fn block() -> impl Strategy<Value = Block> {
+        Just(Block::Step).prop_recursive(3, 8, 2, |inner| {
+            let some = || prop::collection::vec(inner.clone(), 2..=3);
+            prop_oneof![
+                some().prop_map(Block::Sequence),
+                some().prop_map(Block::Alternatives),
+                some().prop_map(Block::Parallel),
+            ]
+        })
+    }
+
+    #[derive(Default)]
+    struct Writer {
+        text: String,
+        steps: u32,
+        inputs: u32,
+        /// The first divergence of a kind is closed as one of the other: parallel, or alternatives.
+        wrong: Option<bool>,
+        /// Step, or steps, where that was done.
+        broken: bool,
+    }
+
+    impl Writer {
+        fn step(&mut self) -> u32 {
+            let word = if self.steps == 0 { "INITIAL_STEP" } else { "STEP" };
+            writeln!(self.text, "{word} X{} : END_STEP", self.steps).unwrap();
+            self.steps += 1;
+            self.steps - 1
+        }
+
+        fn transition(&mut self, from: &[u32], to: &[u32], receptivity: Option<String>) {
+            let list = |steps: &[u32]| steps.iter().map(|it| format!("X{it}")).collect::<Vec<_>>().join(",");
+            self.inputs += 1;
+            let receptivity = receptivity.unwrap_or_else(|| format!("%M{}", self.inputs));
+            let (from, to) = (list(from), list(to));
+            writeln!(self.text, "TRANSITION FROM ({from}) TO ({to}) := {receptivity}; END_TRANSITION").unwrap();
+        }
+
+        /// First and last step.
+        fn write(&mut self, block: &Block) -> (u32, u32) {
+            match block {
+                Block::Step => {
+                    let step = self.step();
+                    (step, step)
+                }
+                Block::Sequence(blocks) => {
+                    let ends: Vec<(u32, u32)> = blocks.iter().map(|it| self.write(it)).collect();
+                    for pair in ends.windows(2) {
+                        self.transition(&[pair[0].1], &[pair[1].0], None);
+                    }
+                    (ends[0].0, ends[ends.len() - 1].1)
+                }
+                Block::Alternatives(blocks) | Block::Parallel(blocks) => {
+                    let is_parallel = matches!(block, Block::Parallel(_));
+                    let (first, last) = (self.step(), self.step());
+                    let ends: Vec<(u32, u32)> = blocks.iter().map(|it| self.write(it)).collect();
+                    let (starts, stops): (Vec<u32>, Vec<u32>) = ends.into_iter().unzip();
+                    let is_wrong = self.wrong == Some(is_parallel) && !std::mem::replace(&mut self.broken, true);
+                    if is_parallel {
+                        self.transition(&[first], &starts, None);
+                    } else {
+                        let word = self.steps;
+                        for (at, &start) in starts.iter().enumerate() {
+                            self.transition(&[first], &[start], Some(format!("%MW{word} = {at}")));
+                        }
+                    }
+                    if is_parallel != is_wrong {
+                        self.transition(&stops, &[last], None);
+                    } else {
+                        stops.iter().for_each(|&it| self.transition(&[it], &[last], None));
+                    }
+                    (first, last)
+                }
+            }
+        }
+
+        fn chart(block: &Block, wrong: Option<bool>) -> (String, bool) {
+            let mut writer = Self { wrong, ..Self::default() };
+            let (first, last) = writer.write(block);
+            let behind = writer.step();
+            writer.transition(&[last], &[behind], None);
+            writer.transition(&[behind], &[first], None);
+            (writer.text, writer.broken)
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(60))]
+
+        #[test]
+        fn correct_charts_are_correct(block in block()) {
+            let (text, _) = Writer::chart(&block, None);
+            with_study(&text, |study| {
+                prop_assert_eq!(study.parts.len(), 1);
+                let part = &study.parts[0];
+                for reached in [&part.own, &part.all] {
+                    prop_assert!(!reached.is_partial && reached.dead.is_empty() && reached.lost.is_empty(), "{}", text);
+                    let active: BTreeSet<Node> =
+                        reached.situations.iter().flat_map(|it| study.net.active(&part.component, it)).collect();
+                    prop_assert_eq!(active.len(), part.component.nodes.len());
+                }
+                for (at, &a) in part.component.crossings.iter().enumerate() {
+                    for &b in &part.component.crossings[..at] {
+                        let from = &study.net.crossings[b].from;
+                        if study.net.crossings[a].from.iter().any(|it| from.contains(it)) {
+                            prop_assert!(study.net.can_be(&part.component, &part.all, &[(a, true), (b, true)]).is_never());
+                        }
+                    }
+                }
+                Ok(())
+            })?;
+        }
+
+        #[test]
+        fn what_is_closed_the_wrong_way_is_found(block in block(), parallel in any::<bool>()) {
+            let (text, broken) = Writer::chart(&block, Some(parallel));
+            prop_assume!(broken);
+            with_study(&text, |study| {
+                let part = &study.parts[0];
+                let found = if parallel {
+                    part.own.lost.iter().any(|it| study.net.opened_in_parallel(&part.component, it.2).is_some())
+                } else {
+                    part.own.dead.iter().any(|&it| {
+                        let situation = &part.own.situations[it as usize];
+                        part.component.crossings.iter().any(|&it| {
+                            let (missing, held) = study.net.waits(&part.component, situation, it);
+                            !missing.is_empty() && !held.is_empty()
+                                && study.net.opened_as_alternatives(&part.component, it).is_some()
+                        })
+                    })
+                };
+                prop_assert!(found, "{}", text);
+                Ok(())
+            })?;
+        }
     }
 }

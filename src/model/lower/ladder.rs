@@ -741,7 +741,7 @@ mod tests {
         let errors: Vec<_> = parse.errors().iter().map(|it| it.message.to_string()).collect();
         assert_eq!(errors, ["`PIN` is no element of a rung"]);
         let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
-        let model = lower(parse.syntax(), text, entity);
+        let model = lower(parse.syntax(), text, entity, Language::Pl7Ld);
         assert!(!model.calls[0].full && model.calls[0].actuals.iter().all(|it| it.given == Given::Unknown));
         assert_eq!(model.statements.len(), 2, "the coil is driven all the same");
     }
