@@ -168,6 +168,21 @@ pub struct Guard {
     nodes: Box<[Expr]>,
 }
 
+impl Guard {
+    /// Every object that it reads or tests for an edge.
+    pub fn objects(&self) -> impl Iterator<Item = ObjectId> {
+        self.nodes.iter().filter_map(|it| match it {
+            Expr::Read { object, .. } | Expr::Edge { object, .. } => Some(*object),
+            _ => None,
+        })
+    }
+
+    /// Whether nothing of it is a value about which nothing is known.
+    pub fn is_understood(&self) -> bool {
+        !self.nodes.iter().any(|it| matches!(it, Expr::Opaque(_)))
+    }
+}
+
 impl Default for Exprs {
     fn default() -> Self {
         Self::with_capacity(0)
