@@ -66,6 +66,18 @@ END_PROGRAM
 [EOF]
 ";
 
+const NETWORKS: &str = "\
+LD : PL7-2 - MAST
+RUNG L1:
+(* pump *)
+OPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);
+END_RUNG
+LD : PL7-2 - FAST
+RUNG L1:
+OPEN_CONTACT(I0,24),H_LINK(8),COIL(O0,04);
+END_RUNG
+";
+
 struct Setup {
     db: RootDatabase,
     events: EventLog,
@@ -250,4 +262,19 @@ fn symbols_cross_files_without_their_places() {
     let executed = setup.executed();
     assert_eq!(Setup::count(&executed, "program_findings"), 1, "{executed:?}");
     assert_eq!(Setup::count(&executed, "analysis"), 1, "the code is not looked at: {executed:?}");
+}
+
+/// What networks cost is a fact, and has no places: one that only moves, or whose comment has other letters, costs the same.
+#[test]
+fn costs_that_stay_wake_no_rule_of_the_program() {
+    let mut it = setup(&[("prog.ld", NETWORKS, Dialect::Pl72)]);
+    let woken = |it: &mut Setup| it.executed().iter().filter(|it| *it == "program_findings").count();
+    for (from, to) in [("LD : PL7-2 - FAST\n", "LD : PL7-2 - FAST\n\n"), ("(* pump *)", "(* mill *)")] {
+        it.edit(0, from, to);
+        it.check();
+        assert_eq!(woken(&mut it), 0, "{from}");
+    }
+    it.edit(0, "H_LINK(8),COIL(O0,04)", "SHORT_CIRCUIT,H_LINK(7),COIL(O0,04)");
+    it.check();
+    assert_eq!(woken(&mut it), 1);
 }

@@ -5,12 +5,15 @@ use crate::analysis::cost;
 use crate::analysis::program::{ObjectUses, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Task;
-use crate::model::object::Area;
+use crate::model::object::{Area, Object};
 use crate::model::unit::Mode;
 use crate::target::pl72::{FAST_TASKS, Feature, Series};
 
 /// The bit that chooses the period (PL72:326-327).
 const PERIOD_BIT: u32 = 3;
+
+/// The controller that PL72:553 speaks of.
+const COUPLED: &str = "TSX 47-20";
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let Some(model) = cx.target.pl72() else { return };
@@ -23,6 +26,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let Some(cost) = cost::task(program, Task::Fast, controller.series) else { return };
     let setting = program.objects.iter().find_map(sets_period);
     let Some(row) = FAST_TASKS.iter().find(|it| it.sy03 == setting.is_some()) else { return };
+    if let Some(setting) = setting.filter(|_| row.excludes_couplers && controller.name == COUPLED) {
+        coupled(cx, setting, sink);
+    }
     let is_long = cost.code_ns > u64::from(row.duration_us.value) * 1_000;
     let is_many = cost.networks > row.networks.value;
     let Some(&(first, _)) = cost.units.first().filter(|_| is_long || is_many) else { return };
@@ -48,6 +54,16 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if setting.is_none() {
         finding.note("nothing sets `SY03`, so that the period is 10 ms");
     }
+}
+
+/// A period of 5 ms beside words of an intelligent module or of the network (PL72:553).
+fn coupled(cx: &ProgramCx<'_>, setting: Site, sink: &mut Sink<'_, Site>) {
+    let is_coupled = |it: &Object| matches!(it.footprint.area, Area::ModuleWords(_) | Area::Network(..));
+    let words = cx.program.objects.iter().filter(|it| is_coupled(it.object));
+    let Some((object, first)) = words.filter_map(|it| Some((it.object, it.uses.first()?))).next() else { return };
+    let message =
+        format!("the fast task cannot run every 5 ms beside a coupler, and `{}` is a word of one", object.text);
+    sink.report(setting, message).related(first.site(), "the module is used here").note("according to PL72:553");
 }
 
 /// A write that may set SY03.

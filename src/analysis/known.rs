@@ -54,3 +54,58 @@ impl<'m> Known<'m> {
         is_sure.then_some(Value { value: stored.value, stored: Some(stored.anchor) })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::{Entity, Part, Task};
+    use crate::model::lower;
+    use crate::syntax::{self, Language};
+
+    /// What the last operation is known to convert: `BCD W1 -> W2`.
+    fn converted(rungs: &[&str]) -> Option<i64> {
+        let text: String = (1..).zip(rungs).map(|(at, rung)| format!("RUNG L{at}:\n{rung}\nEND_RUNG\n")).collect();
+        let parse = syntax::parse(Language::Pl72Ld, &text);
+        assert_eq!(parse.errors(), [], "{text}");
+        let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let model = lower::lower(parse.syntax(), &text, entity, Language::Pl72Ld);
+        let known = Known::new(&model);
+        let last = model.statements.iter().rev().find_map(|it| match it.kind {
+            StatementKind::Store { value, .. } => Some((value, it.path)),
+            _ => None,
+        });
+        let (value, path) = last.expect("an operation");
+        let Expr::Call(_, operands) = model.exprs.get(value) else { panic!("{:?}", model.exprs.get(value)) };
+        let found = operands.last().and_then(|it| known.value(*it, path))?;
+        assert!(found.stored.is_some());
+        Some(found.value)
+    }
+
+    const SET: &str = "H_LINK(7),OPERATE 12000 -> W1 END_BLOCK;";
+    const MAYBE: &str = "OPEN_CONTACT(B0),H_LINK(6),OPERATE 12000 -> W1 END_BLOCK;";
+    const CONVERT: &str = "H_LINK(7),OPERATE BCD W1 -> W2 END_BLOCK;";
+
+    #[test]
+    fn a_store_that_control_came_by() {
+        assert_eq!(converted(&[SET, CONVERT]), Some(12_000));
+        assert_eq!(converted(&[MAYBE, CONVERT]), None);
+        assert_eq!(converted(&[MAYBE, "OPEN_CONTACT(B0),H_LINK(6),OPERATE BCD W1 -> W2 END_BLOCK;"]), Some(12_000));
+        assert_eq!(converted(&["OPEN_CONTACT(B0),H_LINK(8),JUMP_COIL(L3);", SET, CONVERT]), None);
+        assert_eq!(converted(&[CONVERT]), None);
+    }
+
+    #[test]
+    fn nothing_wrote_in_between() {
+        for other in [
+            "H_LINK(7),OPERATE W5 -> W1 END_BLOCK;",
+            "OPEN_CONTACT(B3),H_LINK(6),OPERATE 5 -> W1 END_BLOCK;",
+            "H_LINK(7),OPERATE 5 -> W0(W5) END_BLOCK;",
+            "H_LINK(7),OPERATE W20[10] -> W0[10] END_BLOCK;",
+            "H_LINK(7),OPERATE BTA W30 -> W0 END_BLOCK;",
+            "OPEN_CONTACT(B3),H_LINK(8),COIL(W1,D);",
+        ] {
+            assert_eq!(converted(&[SET, other, CONVERT]), None, "{other}");
+        }
+        assert_eq!(converted(&[SET, "H_LINK(7),OPERATE 5 -> W3 END_BLOCK;", CONVERT]), Some(12_000));
+    }
+}

@@ -14,6 +14,8 @@ pub mod facts;
 pub mod features;
 pub mod gaps;
 pub mod known;
+pub mod modules;
+pub mod operands;
 pub mod program;
 pub mod reach;
 pub mod satisfy;

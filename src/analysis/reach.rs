@@ -13,12 +13,11 @@ use super::chart::{Chart, FactReceptivity, Step, Transition};
 use super::facts::{self, UnitFacts};
 use super::program::ProgramIndex;
 use super::satisfy::{Answer, Space};
-use crate::model::chart::{Graph, StepName};
+use crate::model::chart::{Graph, StepKind, StepName};
 use crate::model::entity::Family;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::Mode;
-use crate::syntax::pl7::chart::ast::StepKind;
 
 /// A chart with more situations than this is not looked at to the end.
 const MAX_SITUATIONS: usize = 20_000;
@@ -39,6 +38,15 @@ pub struct Crossing {
     pub from: Vec<Node>,
     pub to: Vec<Node>,
     pub guard: Guarded,
+    /// The same in the component: places of the steps, and the step bits that the receptivity asks for.
+    route: Route,
+}
+
+#[derive(Debug, Default)]
+struct Route {
+    from: Vec<usize>,
+    to: Vec<usize>,
+    asked: Vec<(usize, ExprId)>,
 }
 
 /// What is known of a receptivity.
@@ -75,12 +83,14 @@ pub struct Net<'p, 'a> {
 }
 
 /// Steps that transitions connect.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Component {
     /// Sorted.
     pub nodes: Vec<Node>,
     pub crossings: Vec<usize>,
     pub initial: Vec<Node>,
+    /// By the place of a step: crossings whose first step it is.
+    behind: Vec<Vec<usize>>,
 }
 
 /// A connected chart with what it reaches.
@@ -102,13 +112,14 @@ pub struct Study<'p, 'a> {
 impl<'p, 'a> Study<'p, 'a> {
     /// Of each section with charts.
     pub fn all(program: &'p ProgramIndex<'a>) -> Vec<Self> {
-        let study = |net: Net<'p, 'a>| {
+        let study = |mut net: Net<'p, 'a>| {
+            let components = net.components();
             let part = |component: Component| {
                 let own = net.reach(&component);
                 let all = net.reach_all(&component);
                 Part { component, own, all }
             };
-            let parts = net.components().into_iter().map(part).collect();
+            let parts = components.into_iter().map(part).collect();
             Self { net, parts }
         };
         Net::all(program).into_iter().map(study).collect()
@@ -231,7 +242,7 @@ impl<'p, 'a> Net<'p, 'a> {
                         Guarded::By(exprs.import(guard, |it| ids.of(crossed.unit, unit, it)))
                     }
                 };
-                crossings.push(Crossing { chart, transition, from, to, guard });
+                crossings.push(Crossing { chart, transition, from, to, guard, route: Route::default() });
             }
         }
         (self.exprs, self.objects, self.crossings) = (exprs, ids.objects, crossings);
@@ -303,7 +314,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     /// Steps that transitions connect with one another, in the order of their first steps.
-    pub fn components(&self) -> Vec<Component> {
+    fn components(&mut self) -> Vec<Component> {
         let mut parent: Vec<u32> = (0..).take(self.nodes.len()).collect();
         fn root(parent: &mut [u32], mut at: u32) -> u32 {
             while parent[at as usize] != at {
@@ -331,7 +342,7 @@ impl<'p, 'a> Net<'p, 'a> {
             }
             let of = root(&mut parent, node);
             let at = *index.entry(of).or_insert_with(|| {
-                components.push(Component { nodes: Vec::new(), crossings: Vec::new(), initial: Vec::new() });
+                components.push(Component::default());
                 components.len() - 1
             });
             components[at].nodes.push(node);
@@ -345,13 +356,36 @@ impl<'p, 'a> Net<'p, 'a> {
                 components[of].crossings.push(at);
             }
         }
+        components.iter_mut().for_each(|it| self.find_routes(it));
         components
+    }
+
+    fn find_routes(&mut self, component: &mut Component) {
+        let nodes_read: FxHashMap<ExprId, Node> = self.step_reads.iter().map(|it| (*it.1, *it.0)).collect();
+        component.behind = vec![Vec::new(); component.nodes.len()];
+        for &at in &component.crossings {
+            let it = &self.crossings[at];
+            let place = |node: &Node| component.nodes.binary_search(node).ok();
+            let mut asked: Vec<(usize, ExprId)> = Vec::new();
+            if let Guarded::By(guard) = it.guard {
+                self.exprs.each_read(guard, |read| {
+                    asked.extend(nodes_read.get(&read).and_then(place).map(|at| (at, read)));
+                });
+            }
+            asked.sort_unstable();
+            let (from, to) = (it.from.iter().filter_map(place).collect(), it.to.iter().filter_map(place).collect());
+            let route = Route { from, to, asked };
+            if let Some(&first) = route.from.first().filter(|_| it.guard != Guarded::Never) {
+                component.behind[first].push(at);
+            }
+            self.crossings[at].route = route;
+        }
     }
 
     /// What a component reaches from its initial situation when branches of one step are never taken together: that they
     /// can be is a finding of its own, and what follows from it is none.
     pub fn reach(&self, component: &Component) -> Reached {
-        self.explore(component, &[component.initial.clone()], true)
+        self.explore(component, std::slice::from_ref(&component.initial), true)
     }
 
     /// What it reaches from there and from what the program sets.
@@ -365,7 +399,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     fn explore(&self, component: &Component, starts: &[Vec<Node>], apart: bool) -> Reached {
-        let walker = Walker { apart, ..Walker::new(self, component) };
+        let walker = Walker { net: self, component, apart };
         let mut reached = Reached::default();
         let mut known: FxHashMap<Situation, u32> = FxHashMap::default();
         let mut lost: FxHashSet<(usize, Node)> = FxHashSet::default();
@@ -449,7 +483,7 @@ impl<'p, 'a> Net<'p, 'a> {
             .collect();
         let Some(guards) = guards else { return Answer::Never };
         let crossings: Vec<usize> = wanted.iter().map(|it| it.0).collect();
-        let walker = Walker::new(self, component);
+        let walker = Walker { net: self, component, apart: false };
         let asked = walker.asked(&crossings);
         let mut seen: FxHashSet<Vec<bool>> = FxHashSet::default();
         let mut answer = Answer::Never;
@@ -474,7 +508,7 @@ impl<'p, 'a> Net<'p, 'a> {
 
     /// Whether a transition is valid in some situation.
     pub fn is_ever_valid(&self, component: &Component, reached: &Reached, crossing: usize) -> bool {
-        let walker = Walker::new(self, component);
+        let walker = Walker { net: self, component, apart: false };
         reached.situations.iter().any(|it| walker.is_valid(it, crossing))
     }
 
@@ -598,14 +632,27 @@ impl<'a> Ids<'a> {
     }
 }
 
+/// Groups of what belongs together, directly or through others; each sorted.
+fn together(list: &[usize], belongs: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for &it in list {
+        let (mut own, others): (Vec<_>, Vec<_>) =
+            groups.into_iter().partition(|group| group.iter().any(|&other| belongs(it, other)));
+        own.push(vec![it]);
+        groups = others;
+        let mut joined = own.concat();
+        joined.sort_unstable();
+        groups.push(joined);
+    }
+    groups
+}
+
 /// Which sets of crossings that depend on one another are possible, by the crossings and the step bits that they ask for.
 type Cache = FxHashMap<(Vec<usize>, Vec<bool>), (Vec<Vec<usize>>, bool)>;
 
 struct Walker<'n, 'p, 'a> {
     net: &'n Net<'p, 'a>,
     component: &'n Component,
-    place: FxHashMap<Node, usize>,
-    words: usize,
     /// Branches of one step are not taken together.
     apart: bool,
 }
@@ -619,39 +666,37 @@ fn as_index(at: usize) -> u32 {
 }
 
 impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
-    fn new(net: &'n Net<'p, 'a>, component: &'n Component) -> Self {
-        let place = component.nodes.iter().enumerate().map(|(at, it)| (*it, at)).collect();
-        Self { net, component, place, words: component.nodes.len().div_ceil(64), apart: false }
-    }
-
     fn situation(&self, nodes: &[Node]) -> Situation {
-        let mut situation = vec![0; self.words].into_boxed_slice();
-        nodes.iter().filter_map(|it| self.place.get(it)).for_each(|at| situation[at / 64] |= 1 << (at % 64));
+        let mut situation = vec![0; self.component.nodes.len().div_ceil(64)].into_boxed_slice();
+        let places = nodes.iter().filter_map(|it| self.component.nodes.binary_search(it).ok());
+        places.for_each(|at| situation[at / 64] |= 1 << (at % 64));
         situation
     }
 
     fn is_valid(&self, situation: &[u64], crossing: usize) -> bool {
-        let it = &self.net.crossings[crossing];
-        it.from.iter().all(|it| self.place.get(it).is_some_and(|at| has(situation, *at)))
+        let from = &self.net.crossings[crossing].route.from;
+        !from.is_empty() && from.iter().all(|at| has(situation, *at))
     }
 
     /// Crossings whose steps are all active, but those that are never crossed.
     fn valid(&self, situation: &[u64]) -> Vec<usize> {
-        let can = |it: &usize| self.net.crossings[*it].guard != Guarded::Never && self.is_valid(situation, *it);
-        self.component.crossings.iter().copied().filter(can).collect()
+        let mut valid = Vec::new();
+        for (word, &bits) in situation.iter().enumerate() {
+            let mut bits = bits;
+            while bits != 0 {
+                let behind = &self.component.behind[word * 64 + bits.trailing_zeros() as usize];
+                valid.extend(behind.iter().copied().filter(|it| self.is_valid(situation, *it)));
+                bits &= bits - 1;
+            }
+        }
+        valid.sort_unstable();
+        valid
     }
 
     /// Step bits of the component that receptivities ask for: their places, and their reads.
     fn asked(&self, crossings: &[usize]) -> Vec<(usize, ExprId)> {
-        let mut asked: Vec<(usize, ExprId)> = Vec::new();
-        for &it in crossings {
-            if let Guarded::By(guard) = self.net.crossings[it].guard {
-                self.net.exprs.each_read(guard, |read| {
-                    let node = self.net.step_reads.iter().find(|it| *it.1 == read).map(|it| *it.0);
-                    asked.extend(node.and_then(|it| self.place.get(&it)).map(|&at| (at, read)));
-                });
-            }
-        }
+        let mut asked: Vec<(usize, ExprId)> =
+            crossings.iter().flat_map(|it| self.net.crossings[*it].route.asked.iter().copied()).collect();
         asked.sort_unstable();
         asked.dedup();
         asked
@@ -663,17 +708,7 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
         // Of those that depend on one another and cannot all wait, one set or the other happens.
         let mut urgent: Vec<Vec<Vec<usize>>> = Vec::new();
         for cluster in self.clusters(valid) {
-            let asked = self.asked(&cluster);
-            let key = (cluster, asked.iter().map(|it| has(situation, it.0)).collect::<Vec<bool>>());
-            let (sets, is_partial) = match cache.get(&key) {
-                Some(known) => known.clone(),
-                None => {
-                    let steps: Vec<(ExprId, bool)> = asked.iter().map(|it| it.1).zip(key.1.iter().copied()).collect();
-                    let found = self.sets(&key.0, &steps);
-                    cache.insert(key, found.clone());
-                    found
-                }
-            };
+            let (sets, is_partial) = self.sets(&cluster, situation, cache);
             *partial |= is_partial;
             if sets.iter().any(Vec::is_empty) {
                 free.extend(sets.into_iter().filter(|it| !it.is_empty()));
@@ -697,47 +732,69 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
 
     /// Valid crossings that share steps or objects, together.
     fn clusters(&self, valid: &[usize]) -> Vec<Vec<usize>> {
-        let mut clusters: Vec<Vec<usize>> = Vec::new();
-        for &it in valid {
-            let crossing = &self.net.crossings[it];
-            let depends = |other: &usize| {
-                let other_crossing = &self.net.crossings[*other];
-                let shares = |a: &[u32], b: &[u32]| a.iter().any(|it| b.contains(it));
-                // One that fills what the other empties gives another result at once than one after the other.
-                shares(&crossing.from, &other_crossing.from)
-                    || shares(&crossing.to, &other_crossing.to)
-                    || shares(&crossing.from, &other_crossing.to)
-                    || shares(&crossing.to, &other_crossing.from)
-                    || shares(&self.net.supports[it], &self.net.supports[*other])
-            };
-            let (mut own, others): (Vec<_>, Vec<_>) =
-                clusters.into_iter().partition(|cluster| cluster.iter().any(depends));
-            own.push(vec![it]);
-            clusters = others;
-            let mut joined = own.concat();
-            joined.sort_unstable();
-            clusters.push(joined);
-        }
-        clusters
+        together(valid, |a, b| {
+            let (one, other) = (&self.net.crossings[a], &self.net.crossings[b]);
+            let shares = |a: &[u32], b: &[u32]| a.iter().any(|it| b.contains(it));
+            // One that fills what the other empties gives another result at once than one after the other.
+            shares(&one.from, &other.from)
+                || shares(&one.to, &other.to)
+                || shares(&one.from, &other.to)
+                || shares(&one.to, &other.from)
+                || shares(&self.net.supports[a], &self.net.supports[b])
+        })
     }
 
     /// The sets of a cluster that can be true together while the rest of it is not, and whether some were left out.
-    fn sets(&self, cluster: &[usize], steps: &[(ExprId, bool)]) -> (Vec<Vec<usize>>, bool) {
+    ///
+    /// Receptivities that share no object are true or not whatever the others are: only those that do are compared.
+    fn sets(&self, cluster: &[usize], situation: &[u64], cache: &mut Cache) -> (Vec<Vec<usize>>, bool) {
+        /// More sets than this are not looked at.
+        const MOST: usize = 64;
+        let supports = &self.net.supports;
+        let tied = |a: usize, b: usize| supports[a].iter().any(|it| supports[b].contains(it));
+        let mut left_out = false;
+        let mut sets: Vec<Vec<usize>> = vec![Vec::new()];
+        for group in together(cluster, tied) {
+            let asked = self.asked(&group);
+            let key = (group, asked.iter().map(|it| has(situation, it.0)).collect::<Vec<bool>>());
+            let (own, is_partial) = match cache.get(&key) {
+                Some(known) => known.clone(),
+                None => {
+                    let steps: Vec<(ExprId, bool)> = asked.iter().map(|it| it.1).zip(key.1.iter().copied()).collect();
+                    let found = self.tied_sets(&key.0, &steps);
+                    cache.insert(key, found.clone());
+                    found
+                }
+            };
+            left_out |= is_partial;
+            let combined = sets.iter().flat_map(|base| own.iter().map(move |it| [base.as_slice(), it].concat()));
+            let combined: Vec<Vec<usize>> = combined.take(MOST + 1).collect();
+            left_out |= combined.len() > MOST;
+            sets = combined;
+        }
+        if self.apart {
+            sets = self.apart(sets);
+        }
+        (sets, left_out)
+    }
+
+    /// The same of receptivities that share objects.
+    fn tied_sets(&self, group: &[usize], steps: &[(ExprId, bool)]) -> (Vec<Vec<usize>>, bool) {
         let space = self.net.space();
-        let is_small = cluster.len() <= MAX_TOGETHER;
+        let is_small = group.len() <= MAX_TOGETHER;
         let candidates: Vec<Vec<usize>> = if is_small {
-            (0..1_usize << cluster.len())
-                .map(|set| cluster.iter().enumerate().filter(|it| set >> it.0 & 1 == 1).map(|it| *it.1).collect())
+            (0..1_usize << group.len())
+                .map(|set| group.iter().enumerate().filter(|it| set >> it.0 & 1 == 1).map(|it| *it.1).collect())
                 .collect()
         } else {
-            let singles = cluster.iter().map(|it| vec![*it]);
-            let pairs = cluster.iter().enumerate().flat_map(|(at, a)| cluster[at + 1..].iter().map(|b| vec![*a, *b]));
+            let singles = group.iter().map(|it| vec![*it]);
+            let pairs = group.iter().enumerate().flat_map(|(at, a)| group[at + 1..].iter().map(|b| vec![*a, *b]));
             [Vec::new()].into_iter().chain(singles).chain(pairs).collect()
         };
         let mut left_out = !is_small;
         let mut sets: Vec<Vec<usize>> = Vec::new();
         for set in candidates {
-            let guards = cluster.iter().filter_map(|it| match self.net.crossings[*it].guard {
+            let guards = group.iter().filter_map(|it| match self.net.crossings[*it].guard {
                 Guarded::By(guard) => Some((guard, set.contains(it))),
                 Guarded::Never | Guarded::Unknown => None,
             });
@@ -747,9 +804,6 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
                 Answer::NotDecided => left_out = true,
                 Answer::Possible(_) => sets.push(set),
             }
-        }
-        if self.apart {
-            sets = self.apart(sets);
         }
         (sets, left_out)
     }
@@ -775,18 +829,15 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
     /// The situation after some crossings (rules 3 to 5). Tells of each step that is activated while it stays active.
     fn after(&self, situation: &[u64], crossed: &[usize], mut lost: impl FnMut(usize, Node)) -> Situation {
         let mut after: Situation = situation.into();
-        let places =
-            |nodes: &[Node]| -> Vec<usize> { nodes.iter().filter_map(|it| self.place.get(it).copied()).collect() };
         for &it in crossed {
-            for at in places(&self.net.crossings[it].from) {
+            for &at in &self.net.crossings[it].route.from {
                 after[at / 64] &= !(1 << (at % 64));
             }
         }
         for &it in crossed {
-            for &node in &self.net.crossings[it].to {
-                let Some(&at) = self.place.get(&node) else { continue };
+            for &at in &self.net.crossings[it].route.to {
                 if has(&after, at) {
-                    lost(it, node);
+                    lost(it, self.component.nodes[at]);
                 }
                 after[at / 64] |= 1 << (at % 64);
             }
@@ -1034,7 +1085,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(60))]
+        #![proptest_config(ProptestConfig::with_cases(40))]
 
         #[test]
         fn correct_charts_are_correct(block in block()) {

@@ -7,6 +7,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::address::{Cursor, LONGEST_SUGGESTION_SOURCE, Number, Place, malformed, out_of_range};
 use super::{AddressError, AddressErrorKind, Area, Class, Object, Rights, Type};
+use crate::target::Range;
 use crate::target::pl72::{self as target, Writer};
 
 /// PL72:263.
@@ -77,6 +78,23 @@ pub fn is_drum_step(object: &Object) -> bool {
     matches!(object.footprint.area, Area::Block("D", _))
         && object.class == Class::BlockWord
         && object.footprint.start == 0
+}
+
+/// Values that a word of a function block takes, presets left aside: the step of a drum, the length, partner and station of a text
+/// block.
+pub fn word_range(object: &Object) -> Option<Range> {
+    let Area::Block(symbol, _) = object.footprint.area else { return None };
+    if is_drum_step(object) {
+        return Some(target::DRUM_STEP);
+    }
+    let items = BLOCKS.iter().find(|it| it.symbol == symbol)?.items;
+    let item = items.iter().find(|it| it.start == object.footprint.start && it.class == object.class)?;
+    match (symbol, item.name) {
+        ("TXT", "L") => Some(target::TEXT_BYTES),
+        ("TXT", "T") => Some(target::TEXT_PARTNERS),
+        ("TXT", "A") => Some(target::TEXT_STATIONS),
+        _ => None,
+    }
 }
 
 /// Where a bit or word of a module is.

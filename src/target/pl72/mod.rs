@@ -7,6 +7,7 @@ mod block;
 mod channel;
 mod cost;
 mod operation;
+mod power;
 mod release;
 mod system;
 
@@ -27,6 +28,10 @@ pub use cost::{
 pub use operation::{
     ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARE_COLUMNS, COMPARISONS, OPERATE_COLUMNS,
     OPERATIONS, Operand, OperandRange, Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
+};
+pub use power::{
+    KEPT_WITHOUT_BATTERY_H, Outage, POWER_FAILURE_LOW_VOLTAGE_MS, POWER_FAILURE_MS, POWER_FAILURES, PowerFailure,
+    power_failure,
 };
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
