@@ -26,29 +26,32 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             }
             let leaving: Vec<&Transition<'_>> =
                 chart.transitions.iter().filter(|it| it.sources.contains(&at)).collect();
-            let sensors: Option<Vec<&str>> = leaving.iter().map(|it| sensor(cx, it)).collect();
-            let Some((first, others)) = sensors.as_ref().and_then(|it| it.split_first()) else { continue };
-            let name = &step.it.text;
-            let waits = if others.iter().all(|it| it == first) {
-                format!("`{first}`")
-            } else {
-                format!("`{first}` and other inputs")
+            let sensors: Option<Vec<Vec<&str>>> = leaving.iter().map(|it| sensors(cx, it)).collect();
+            let mut sensors: Vec<&str> = sensors.unwrap_or_default().concat();
+            sensors.sort_unstable();
+            sensors.dedup();
+            let waits = match &sensors[..] {
+                [] => continue,
+                [only] => format!("`{only}` alone"),
+                several => format!("the inputs `{}` alone", several.join("`, `")),
             };
-            sink.report(step.site(), format!("step `{name}` waits for {waits} alone, and nothing checks its time"))
+            let name = &step.it.text;
+            sink.report(step.site(), format!("step `{name}` waits for {waits}, and nothing checks its time"))
                 .related_all(leaving.iter().map(|it| (it.site(), "it is left here".to_owned())));
         }
     }
 }
 
-/// An input that a receptivity waits for, when it depends on inputs and steps alone.
-fn sensor<'a>(cx: &ProgramCx<'a>, it: &Transition<'a>) -> Option<&'a str> {
+/// The inputs that a receptivity asks for, when it depends on inputs and steps alone.
+fn sensors<'a>(cx: &ProgramCx<'a>, it: &Transition<'a>) -> Option<Vec<&'a str>> {
     let FactReceptivity::Guard(guard) = &it.it.receptivity else { return None };
     let all: &'a [FactObject] = &cx.program.units.get(it.unit as usize)?.objects;
     let objects: Option<Vec<&FactObject>> = guard.objects().map(|it| all.get(it.0 as usize)).collect();
     let objects = objects.filter(|_| guard.is_understood())?;
     let is_plain = |it: &&FactObject| matches!(it.object.class, Class::Input | Class::Step);
-    let input = objects.iter().find(|it| it.object.class == Class::Input)?;
-    objects.iter().all(is_plain).then_some(input.object.text.as_str())
+    let inputs = objects.iter().filter(|it| it.object.class == Class::Input);
+    let inputs: Vec<&str> = inputs.map(|it| it.object.text.as_str()).collect();
+    (!inputs.is_empty() && objects.iter().all(is_plain)).then_some(inputs)
 }
 
 /// Whether a step drives something: by an action, or by its bit outside of the charts.
