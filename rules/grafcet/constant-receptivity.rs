@@ -9,7 +9,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let net = &study.net;
         for part in &study.parts {
             for &it in &part.component.crossings {
-                let is_asked = matches!(net.crossings[it].guard, Guarded::By(_));
+                // A time that is never reached is the affair of the rule about the times of steps.
+                let is_asked = match net.crossings[it].guard {
+                    Guarded::By(guard) => !net.space().asks_beyond_step_times(guard),
+                    Guarded::Never | Guarded::Unknown => false,
+                };
                 if !is_asked || !net.is_ever_valid(&part.component, &part.all, it) {
                     continue;
                 }

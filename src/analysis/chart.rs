@@ -9,11 +9,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::Site;
-use super::facts::{UnitFacts, Use};
+use super::facts::{FactObject, UnitFacts, Use};
+use crate::model::UnitModel;
 use crate::model::chart::{self, ActionKind, CodeLanguage, ConnectorKind, Graph, Node, StepKind, StepName};
 use crate::model::entity::{Entity, Task};
-use crate::model::expr::{Exprs, Guard};
+use crate::model::expr::{Expr, Exprs, Guard};
 use crate::model::object::{Area, Footprint};
+use crate::model::unit::StatementKind;
 
 /// What a unit tells of its part of a chart.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -95,10 +97,62 @@ pub struct FactAction {
     pub language: Option<CodeLanguage>,
     /// Places that its code names.
     pub anchors: Range<u32>,
+    /// What its last write of each bit says.
+    pub left: Vec<Left>,
+}
+
+/// What an action leaves a bit at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Left {
+    /// Index into [`UnitFacts::objects`].
+    pub object: u32,
+    /// `None` for a value that is not a constant.
+    pub value: Option<bool>,
+    /// Whenever the action runs, and not under some condition.
+    pub is_sure: bool,
+    pub anchor: u32,
+}
+
+/// What each action leaves, by the order of its code.
+fn left(chart: &chart::Chart, model: &UnitModel) -> FxHashMap<u32, Vec<Left>> {
+    let mut constants: FxHashMap<u32, (bool, bool)> = FxHashMap::default();
+    for it in &model.statements {
+        let (access, value, when) = match it.kind {
+            StatementKind::Set { access, when } => (access, true, when),
+            StatementKind::Reset { access, when } => (access, false, when),
+            StatementKind::Assign { access, value } => match *model.exprs.get(value) {
+                Expr::Bool(value) => (access, value, Exprs::TRUE),
+                _ => continue,
+            },
+            _ => continue,
+        };
+        constants.insert(access, (value, when == Exprs::TRUE));
+    }
+    let mut left: FxHashMap<u32, Vec<Left>> = FxHashMap::default();
+    let mut places: FxHashMap<(u32, u32), usize> = FxHashMap::default();
+    for (at, access) in (0..).zip(&model.accesses).filter(|it| it.1.mode.writes()) {
+        let Some(action) = chart.action_at(access.anchor) else { continue };
+        let constant = constants.get(&at);
+        let it = Left {
+            object: access.object.0,
+            value: constant.map(|it| it.0),
+            is_sure: constant.is_some_and(|it| it.1) && access.path == action.path,
+            anchor: access.anchor,
+        };
+        let own = left.entry(action.anchors.start).or_default();
+        let place = *places.entry((action.anchors.start, it.object)).or_insert(own.len());
+        match own.get_mut(place) {
+            Some(before) => *before = it,
+            None => own.push(it),
+        }
+    }
+    left
 }
 
 impl ChartFacts {
-    pub fn new(chart: &chart::Chart, entity: &Entity, exprs: &Exprs) -> Self {
+    pub fn new(chart: &chart::Chart, model: &UnitModel) -> Self {
+        let (entity, exprs) = (&model.entity, &model.exprs);
+        let mut left = left(chart, model);
         let sorted = |steps: &[u32]| {
             let mut steps = steps.to_vec();
             steps.sort_unstable();
@@ -112,6 +166,7 @@ impl ChartFacts {
                 kind: it.kind,
                 language: it.language,
                 anchors: it.anchors.clone(),
+                left: left.remove(&it.anchors.start).filter(|_| !it.anchors.is_empty()).unwrap_or_default(),
             })
             .collect();
         actions.sort_by_key(|it| it.anchors.start);
@@ -194,6 +249,63 @@ pub fn in_exclusive_actions(first: &UnitFacts, a: &Use, second: &UnitFacts, b: &
     let is_of_one_step = x.steps.len() == 1 && y.steps.len() == 1;
     is_of_one_step && (is_end(x) && is_active(y) || is_active(x) && is_end(y))
         || !one.names(x).any(|it| other.names(y).any(|also| it == also))
+}
+
+/// An action of a program.
+#[derive(Debug, Clone, Copy)]
+pub struct Action<'a> {
+    pub unit: u32,
+    pub it: &'a FactAction,
+}
+
+impl<'a> Action<'a> {
+    /// What its last write says of an object of a unit.
+    pub fn left(self, units: &[&'a UnitFacts], object: &FactObject) -> Option<&'a Left> {
+        let objects = &units.get(self.unit as usize)?.objects;
+        self.it.left.iter().find(|it| objects.get(it.object as usize).is_some_and(|it| it.is_same(object)))
+    }
+
+    /// Whether a place stands in its code.
+    pub fn holds(self, place: Site) -> bool {
+        place.unit == self.unit && self.it.anchors.contains(&place.anchor)
+    }
+}
+
+/// The actions of the steps of a program, whether they stand in the page of their step or under a heading of their own.
+#[derive(Debug, Default)]
+pub struct Actions<'a>(FxHashMap<StepKey<'a>, Vec<Action<'a>>>);
+
+type StepKey<'a> = (Task, Option<&'a SmolStr>, Graph, &'a StepName);
+
+impl<'a> Actions<'a> {
+    pub fn new(units: &[&'a UnitFacts]) -> Self {
+        let mut actions: FxHashMap<StepKey<'a>, Vec<Action<'a>>> = FxHashMap::default();
+        for (unit, facts) in (0..).zip(units) {
+            let (Some(part), Some((task, section))) = (facts.chart.as_deref(), section(&facts.entity)) else {
+                continue;
+            };
+            for it in &part.actions {
+                for name in part.names(it) {
+                    actions.entry((task, section, part.graph, name)).or_default().push(Action { unit, it });
+                }
+            }
+        }
+        Self(actions)
+    }
+
+    /// Those of a step, in the order of the program.
+    pub fn of(&self, chart: &Chart<'a>, step: u32) -> &[Action<'a>] {
+        let name = chart.steps.get(step as usize).and_then(|it| it.it.name.as_ref());
+        let key = name.map(|name| (chart.task, chart.section, chart.graph, name));
+        key.and_then(|it| self.0.get(&it)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The one of a step that runs in some way; `None` where there are several.
+    pub fn only(&self, chart: &Chart<'a>, step: u32, kind: ActionKind) -> Option<Action<'a>> {
+        let mut found = self.of(chart, step).iter().filter(|it| it.it.kind == Some(kind));
+        let first = *found.next()?;
+        found.next().is_none().then_some(first)
+    }
 }
 
 /// A step of a joined chart.

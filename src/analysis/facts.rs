@@ -277,7 +277,7 @@ impl UnitFacts {
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
-            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, &model.entity, &model.exprs))),
+            chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, model))),
             interface: model.interface.clone(),
             condition: None,
             commented: false,

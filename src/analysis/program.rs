@@ -7,7 +7,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::Site;
-use super::chart::{self, Chart};
+use super::chart::{self, Actions, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
@@ -244,6 +244,7 @@ pub struct ProgramIndex<'a> {
     exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
     charts: OnceCell<Vec<Chart<'a>>>,
+    actions: OnceCell<Actions<'a>>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -296,12 +297,27 @@ impl<'a> ProgramIndex<'a> {
             exclusive_uses,
             names,
             charts: OnceCell::new(),
+            actions: OnceCell::new(),
         }
     }
 
     /// The charts of the program, whose pages are joined.
     pub fn charts(&self) -> &[Chart<'a>] {
         self.charts.get_or_init(|| chart::join(&self.units))
+    }
+
+    /// The actions of their steps.
+    pub fn actions(&self) -> &Actions<'a> {
+        self.actions.get_or_init(|| Actions::new(&self.units))
+    }
+
+    /// The object of the program that an object of a unit is, by index; `None` for one that no other unit knows.
+    pub fn object_of(&self, it: &FactObject) -> Option<u32> {
+        let is_same = |other: &ObjectUses<'_>| {
+            let (one, other) = (&it.object, other.object);
+            (one.ty, one.indexed) == (other.ty, other.indexed) && one.footprint == other.footprint
+        };
+        self.objects.iter().position(is_same).map(as_index)
     }
 
     /// Whether two writes of one object can both take effect in one scan.

@@ -137,6 +137,26 @@ impl<'a> Space<'a> {
         }
     }
 
+    /// Whether a condition asks a step time for what it never is, or always is.
+    pub fn asks_beyond_step_times(&self, condition: ExprId) -> bool {
+        let mut found = false;
+        self.exprs.each_comparison(condition, |op, a, b| {
+            let (time, constant, op) = match (self.constant(a), self.constant(b)) {
+                (None, Some(Constant::Int(constant))) => (a, constant, op),
+                (Some(Constant::Int(constant)), None) => (b, constant, op.mirrored()),
+                _ => return,
+            };
+            let is_time = |it: &Object| it.class == Class::StepTime;
+            let Expr::Read { object, .. } = *self.exprs.get(time) else { return };
+            if self.object(object).is_some_and(is_time)
+                && let Some((first, last)) = self.domain(time)
+            {
+                found |= op.decided(first, last, constant).is_some();
+            }
+        });
+        found
+    }
+
     fn object(&self, id: ObjectId) -> Option<&'a Object> {
         self.objects.get(id.0 as usize).copied()
     }

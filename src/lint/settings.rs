@@ -112,6 +112,7 @@ pub struct Overrides {
 struct File {
     target: TargetConfig,
     objects: BTreeMap<Spanned<String>, Spanned<u32>>,
+    chart: ChartConfig,
     files: Files,
     entity: Vec<EntityHint>,
     task: Vec<TaskConfig>,
@@ -137,6 +138,14 @@ struct TargetConfig {
     security_output: Option<Spanned<bool>>,
     /// Bytes of memory that a PL7-2 program may take.
     program_memory: Option<Spanned<u32>>,
+}
+
+/// How much of a chart the controller keeps at once.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ChartConfig {
+    pub active_steps: Option<u32>,
+    pub valid_transitions: Option<u32>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -595,6 +604,11 @@ impl Settings {
             return None;
         }
         self.0.file.objects.iter().find(|it| it.0.get_ref() == family).map(|it| *it.1.get_ref())
+    }
+
+    /// What the application configures of its charts; nothing when the command line names another controller than the file.
+    pub fn chart(&self) -> ChartConfig {
+        if self.is_another_controller() { ChartConfig::default() } else { self.0.file.chart }
     }
 
     /// What programs of a family are checked for: the configured controller with the configured counts, when it is one of

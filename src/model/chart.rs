@@ -202,6 +202,8 @@ pub struct Action {
     /// `None` where steps run it in different ways, or the text does not say how.
     pub kind: Option<ActionKind>,
     pub language: Option<CodeLanguage>,
+    /// Condition under which its code starts.
+    pub path: ExprId,
     /// Places that its code names.
     pub anchors: Range<u32>,
     pub range: TextRange,
@@ -345,6 +347,31 @@ impl Chart {
             Node::Connector(at) => self.connectors.get(*at as usize)?.name.as_ref(),
             Node::Named(name) => Some(name),
         }
+    }
+
+    /// Elements that are joined because one stands below the other: both cells, and a place that names them.
+    pub fn vertical_joins(&self) -> Vec<(Cell, Cell, TextRange)> {
+        let cell = |node: &Node| match node {
+            Node::Step(at) => self.steps.get(*at as usize)?.cell,
+            Node::Connector(at) => self.connectors.get(*at as usize)?.cell,
+            Node::Named(_) => None,
+        };
+        let mut joins = Vec::new();
+        let mut join = |above: Option<Cell>, below: Option<Cell>, range: TextRange| {
+            if let (Some(above), Some(below)) = (above, below)
+                && above.below() == Some(below)
+            {
+                joins.push((above, below, range));
+            }
+        };
+        for it in &self.transitions {
+            it.sources.iter().for_each(|source| join(cell(source), it.cell, it.range));
+            it.targets.iter().for_each(|target| join(it.cell, cell(target), it.range));
+        }
+        for it in &self.connectors {
+            it.steps.iter().for_each(|&step| join(it.cell, cell(&Node::Step(step)), it.range));
+        }
+        joins
     }
 
     /// Every place where branches part or meet, in the order of the elements.

@@ -63,6 +63,23 @@ impl Comparison {
         }
     }
 
+    /// Whether a comparison of a number with a constant holds for every number of a range, or for none; `None` where that
+    /// depends on the number.
+    pub fn decided(self, first: i64, last: i64, constant: i64) -> Option<bool> {
+        match self {
+            Self::Eq if constant < first || constant > last => Some(false),
+            Self::Eq if first == last => Some(true),
+            Self::Eq => None,
+            Self::Lt if last < constant => Some(true),
+            Self::Lt if first >= constant => Some(false),
+            Self::Lt => None,
+            Self::Le if last <= constant => Some(true),
+            Self::Le if first > constant => Some(false),
+            Self::Le => None,
+            Self::Ne | Self::Gt | Self::Ge => self.negated().decided(first, last, constant).map(|it| !it),
+        }
+    }
+
     pub fn holds(self, order: std::cmp::Ordering) -> bool {
         match self {
             Self::Eq => order.is_eq(),
@@ -151,6 +168,21 @@ pub struct Guard {
     nodes: Box<[Expr]>,
 }
 
+impl Guard {
+    /// Every object that it reads or tests for an edge.
+    pub fn objects(&self) -> impl Iterator<Item = ObjectId> {
+        self.nodes.iter().filter_map(|it| match it {
+            Expr::Read { object, .. } | Expr::Edge { object, .. } => Some(*object),
+            _ => None,
+        })
+    }
+
+    /// Whether nothing of it is a value about which nothing is known.
+    pub fn is_understood(&self) -> bool {
+        !self.nodes.iter().any(|it| matches!(it, Expr::Opaque(_)))
+    }
+}
+
 impl Default for Exprs {
     fn default() -> Self {
         Self::with_capacity(0)
@@ -237,23 +269,21 @@ impl Exprs {
         Some(Guard { nodes: ids.iter().map(node).collect() })
     }
 
-    /// Every read and edge that a condition is made of, each once.
-    fn each_leaf(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
+    /// Every expression that a condition is made of, itself too, each once.
+    fn each_part(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
         let mut seen = FxHashSet::default();
         let mut stack = vec![condition];
         while let Some(id) = stack.pop() {
             if seen.insert(id) {
                 self.get(id).operands(|it| stack.push(it));
-                if matches!(self.get(id), Expr::Read { .. } | Expr::Edge { .. }) {
-                    each(id);
-                }
+                each(id);
             }
         }
     }
 
     /// Every object that a condition reads or tests for an edge.
     pub fn each_object(&self, condition: ExprId, mut each: impl FnMut(ObjectId)) {
-        self.each_leaf(condition, |id| match self.get(id) {
+        self.each_part(condition, |id| match self.get(id) {
             Expr::Read { object, .. } | Expr::Edge { object, .. } => each(*object),
             _ => {}
         });
@@ -261,9 +291,18 @@ impl Exprs {
 
     /// Every plain read that a condition is made of.
     pub fn each_read(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
-        self.each_leaf(condition, |id| {
+        self.each_part(condition, |id| {
             if matches!(self.get(id), Expr::Read { .. }) {
                 each(id);
+            }
+        });
+    }
+
+    /// Every comparison that a condition is made of.
+    pub fn each_comparison(&self, condition: ExprId, mut each: impl FnMut(Comparison, ExprId, ExprId)) {
+        self.each_part(condition, |id| {
+            if let Expr::Compare(op, a, b) = *self.get(id) {
+                each(op, a, b);
             }
         });
     }

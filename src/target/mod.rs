@@ -64,6 +64,21 @@ pub struct ClearedBit {
     pub source: &'static str,
 }
 
+/// What all charts of a program may have at most: in their drawing, and at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ChartCapacity {
+    /// Those of expansions too, but for `IN` and `OUT`.
+    pub steps: Limit,
+    pub transitions: Limit,
+    pub and_convergences: Option<Limit>,
+    /// Origin and destination.
+    pub connectors: Option<(Limit, Limit)>,
+    pub active_steps: Limit,
+    pub valid_transitions: Limit,
+    /// The last two as they are unless configured, of a known controller where they are configured.
+    pub default: Option<(Limit, Limit)>,
+}
+
 /// The controller that a program is for, as far as it is known, and what the application configures on it.
 ///
 /// Of an unknown controller, a figure is the one that holds for every controller of the family: the largest count.
@@ -278,6 +293,35 @@ impl Target {
         self.processor().map(|it| it.chart_max).or(largest)
     }
 
+    /// Elements of all charts of a program.
+    pub fn chart_capacity(&self) -> Option<ChartCapacity> {
+        match self.family {
+            Family::Pl7 => {
+                let most = self.processor().map_or(pl7::CHART_LARGEST, |it| it.chart_max);
+                let default = self.processor().map(|it| it.chart_default);
+                Some(ChartCapacity {
+                    steps: most.all_steps,
+                    transitions: pl7::TRANSITIONS,
+                    and_convergences: Some(pl7::AND_CONVERGENCES),
+                    connectors: None,
+                    active_steps: most.active_steps,
+                    valid_transitions: most.valid_transitions,
+                    default: default.map(|it| (it.active_steps, it.valid_transitions)),
+                })
+            }
+            Family::Pl72 => Some(ChartCapacity {
+                steps: pl72::STEPS,
+                transitions: pl72::TRANSITIONS,
+                and_convergences: None,
+                connectors: Some((pl72::ORIGIN_CONNECTORS, pl72::DESTINATION_CONNECTORS)),
+                active_steps: pl72::ACTIVE_STEPS,
+                valid_transitions: pl72::VALID_TRANSITIONS,
+                default: None,
+            }),
+            Family::Step7 => None,
+        }
+    }
+
     /// Branches of one divergence or convergence of a chart.
     pub const fn chart_branches(&self) -> Option<Limit> {
         match self.family {
@@ -301,6 +345,15 @@ impl Target {
         match self.family {
             Family::Pl7 => Some(&pl7::CHART_BITS),
             Family::Pl72 => Some(&pl72::CHART_BITS),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Values that the time of a step takes, and its unit in milliseconds.
+    pub const fn step_times(&self) -> Option<(Range, Limit)> {
+        match self.family {
+            Family::Pl7 => Some((pl7::STEP_TIMES, pl7::STEP_TIME_UNIT_MS)),
+            Family::Pl72 => Some((pl72::STEP_TIMES_S, pl72::STEP_TIME_UNIT_MS)),
             Family::Step7 => None,
         }
     }

@@ -52,6 +52,7 @@ pub static CHART_BITS: ChartBits = ChartBits {
 };
 /// Times of steps, in units of 100 ms.
 pub const STEP_TIMES: Range = Range::new(0, 9999, "PL7:4248");
+pub const STEP_TIME_UNIT_MS: Limit = Limit::new(100, "PL7:4248");
 /// Only these system words can be a table.
 pub const SYSTEM_WORD_TABLE: Range = Range::new(50, 53, "PL7:1045");
 /// Transitions of a chart, of which at most 64 may close or open AND branches (PL7:4286).

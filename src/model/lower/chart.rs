@@ -68,6 +68,7 @@ pub(super) fn enter_piece(pl7: &mut Pl7) {
         Piece::Chart => return,
         Piece::Action { step, kind } => {
             let bit = step_bit(pl7, &step, place.graph);
+            let path = guard(pl7, kind, bit);
             chart.steps.push(Step {
                 text: SmolStr::from(step.to_string()),
                 kind: kind_of(&step),
@@ -81,10 +82,11 @@ pub(super) fn enter_piece(pl7: &mut Pl7) {
                 steps: vec![0],
                 kind: Some(kind),
                 language: None,
+                path,
                 anchors: 0..u32::MAX,
                 range: heading,
             });
-            guard(pl7, kind, bit)
+            path
         }
         Piece::Receptivity { from, .. } => {
             let bit = step_bit(pl7, &from, place.graph);
@@ -280,6 +282,7 @@ impl<'t> Lowering<'t> {
             steps: step.into_iter().collect(),
             kind: it.kind(),
             language: it.language(),
+            path: Exprs::FALSE,
             anchors: 0..0,
             range,
         });
@@ -453,6 +456,7 @@ impl<'t> Lowering<'t> {
             let action = &mut self.chart.actions[at];
             action.anchors = first..index(pl7.b.model.anchors.len());
             action.language = Some(language);
+            action.path = path;
             self.pl7 = Some(pl7);
         }
     }
@@ -516,6 +520,7 @@ impl<'t> Lowering<'t> {
                     steps: vec![it.step],
                     kind: it.kind,
                     language: None,
+                    path: Exprs::TRUE,
                     anchors,
                     range: it.range,
                 });

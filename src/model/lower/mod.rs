@@ -17,6 +17,7 @@ use super::UnitModel;
 use super::entity::Entity;
 use super::unit::Pin;
 use crate::syntax::{Language, SyntaxNode};
+use crate::target::pl72::BLOCKS;
 
 /// What the code of a unit does. `text` is the tree's text. Total: what is not understood leaves no statement.
 pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Language) -> UnitModel {
@@ -31,6 +32,12 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
             chart::lower(root, text, entity, language)
         }
     }
+}
+
+/// Whether an input of a block of PL7-2 acts when it rises, and not while it is 1; by the symbol of the block.
+pub fn acts_on_edge(block: &str, input: Pin) -> bool {
+    let of = BLOCKS.iter().filter(|it| it.symbol == Some(block));
+    of.flat_map(|it| it.inputs).any(|it| it.edge && pl72::pin(block, it.name) == input)
 }
 
 #[cfg(test)]

@@ -104,6 +104,7 @@ pub const AND_BRANCHES_IN: Limit = Limit::new(4, "PL72:1383");
 pub const STEP_ACTIONS: Limit = Limit::new(4, "PL72:1428");
 /// Times of steps, in seconds (also PL72:1793).
 pub const STEP_TIMES_S: Range = Range::new(0, 9999, "PL72:1451");
+pub const STEP_TIME_UNIT_MS: Limit = Limit::new(1000, "PL72:1451");
 
 /// The fast task of TSX 27 and TSX 47, which is periodic: what one setting of SY03 makes of it (PL72:547-549).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
