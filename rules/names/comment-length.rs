@@ -4,12 +4,13 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::symbols::{Remark, RemarkKind};
-use crate::syntax::{Language, SyntaxKind};
+use crate::syntax::{Language, SyntaxElement, SyntaxKind};
+use crate::target::Limit;
 use crate::target::pl7::{
-    DFB_ITEM_COMMENT_LENGTH, IL_COMMENT_LENGTH, RUNG_COMMENT_LENGTH, SECTION_COMMENT_LENGTH, ST_COMMENT_LENGTH,
-    SYMBOL_COMMENT_LENGTH,
+    CHART_COMMENT_LENGTH, DFB_ITEM_COMMENT_LENGTH, IL_COMMENT_LENGTH, RUNG_COMMENT_LENGTH, SECTION_COMMENT_LENGTH,
+    ST_COMMENT_LENGTH, SYMBOL_COMMENT_LENGTH,
 };
-use crate::target::pl72::COMMENT_LENGTH;
+use crate::target::pl72::{COMMENT_LENGTH, STEP_COMMENT_LENGTH};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for remark in &cx.model.remarks {
@@ -26,6 +27,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         }
     }
     let (limit, what) = match cx.model.language {
+        Language::Pl7Gr7 => return chart(cx, CHART_COMMENT_LENGTH, sink),
+        Language::Pl72Gr7 => return chart(cx, STEP_COMMENT_LENGTH, sink),
         Language::Pl7Ld => (RUNG_COMMENT_LENGTH, "ladder"),
         Language::Pl7Il => (IL_COMMENT_LENGTH, "a list of instructions"),
         Language::Pl7St => (ST_COMMENT_LENGTH, "structured text"),
@@ -42,6 +45,24 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         if characters > limit.value as usize && !is_item(token.text_range()) {
             let message = format!("a comment in {what} has {characters} characters, {} are allowed", limit.value);
             sink.report(token.text_range(), message).note(format!("the limit is that of {}", limit.source));
+        }
+    }
+}
+
+/// Comments of the elements of a page: what stands in their heads, and comments on the page itself.
+fn chart(cx: &UnitCx<'_>, limit: Limit, sink: &mut Sink<'_, TextRange>) {
+    for kind in [SyntaxKind::ChartStep, SyntaxKind::Transition, SyntaxKind::ChartComment] {
+        for node in cx.nodes(kind) {
+            let head = node.children_with_tokens().take_while(|it| it.kind() != SyntaxKind::Colon);
+            let texts = head.filter_map(SyntaxElement::into_token);
+            for token in texts.filter(|it| matches!(it.kind(), SyntaxKind::Comment | SyntaxKind::CharString)) {
+                let characters = Remark::inner(token.text()).chars().count();
+                if characters > limit.value as usize {
+                    let message =
+                        format!("a comment in a chart has {characters} characters, {} are allowed", limit.value);
+                    sink.report(token.text_range(), message).note(format!("the limit is that of {}", limit.source));
+                }
+            }
         }
     }
 }

@@ -1,7 +1,9 @@
 //! W003: a bit that is set and never reset, or reset and never set.
 
 use crate::analysis::Site;
-use crate::analysis::program::{Context, GlobalUse, ObjectUses};
+use crate::analysis::drives::Hidden;
+use crate::analysis::processing::InAction;
+use crate::analysis::program::{GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Severity, Sink};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
@@ -11,7 +13,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !cx.program.complete {
         return;
     }
-    let hidden = Hidden::new(cx);
+    let hidden = Hidden::new(cx.program);
     for (at, uses) in (0..).zip(&cx.program.objects) {
         let class = uses.object.class;
         let is_bit = uses.object.ty == Type::Bool || class == Class::Symbol;
@@ -22,11 +24,15 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let sets: Vec<&GlobalUse<'_>> = uses.with_mode(|it| it == Mode::Set).collect();
         let resets: Vec<&GlobalUse<'_>> = uses.with_mode(|it| it == Mode::Reset).collect();
         let Some((missing, places)) = one_sided(&sets, &resets) else { continue };
+        // What a step stores is G011's affair.
+        if missing == Mode::Reset && sets.iter().any(|it| InAction::of(cx.program, it).is_some()) {
+            continue;
+        }
         // A memory bit that nothing reads is O007's affair.
         let unread = class == Class::Memory && !is_read(cx, at, uses);
         let constant_one = missing == Mode::Reset
             && sets.iter().any(|it| {
-                it.it.own || cx.program.is_startup(it.unit) || !it.it.conditional && !is_in_event(cx, it.unit)
+                it.it.own || cx.program.is_startup(it.unit) || !it.it.conditional && !cx.program.is_in_event(it.unit)
             });
         let is_placed = cx.program.writes_indirectly(&uses.object.footprint.area);
         if unread || constant_one || is_placed || is_written_otherwise(cx, at, uses) || hidden.may_hold(class, missing)
@@ -58,12 +64,6 @@ fn one_sided<'p, 'a>(
     }
 }
 
-/// Whether the unit runs in events alone, each of which something raises.
-fn is_in_event(cx: &ProgramCx<'_>, unit: u32) -> bool {
-    let contexts = &cx.program.contexts[unit as usize];
-    !contexts.is_empty() && contexts.iter().all(|it| matches!(it, Context::Event(_)))
-}
-
 fn is_read(cx: &ProgramCx<'_>, at: u32, uses: &ObjectUses<'_>) -> bool {
     uses.is_read() || cx.neighbours(at).iter().any(|&it| cx.program.objects[it as usize].is_read())
 }
@@ -72,36 +72,4 @@ fn is_read(cx: &ProgramCx<'_>, at: u32, uses: &ObjectUses<'_>) -> bool {
 fn is_written_otherwise(cx: &ProgramCx<'_>, at: u32, uses: &ObjectUses<'_>) -> bool {
     let by_itself = uses.uses.iter().any(|it| it.mode.writes() && !matches!(it.mode, Mode::Set | Mode::Reset));
     by_itself || cx.neighbours(at).iter().any(|&it| cx.program.objects[it as usize].is_written())
-}
-
-/// Writes that may be the missing ones under another name: of a symbol that nothing resolves for an address, and of any
-/// address for such a symbol.
-struct Hidden {
-    by_symbol: [bool; 2],
-    by_address: [bool; 2],
-}
-
-impl Hidden {
-    fn new(cx: &ProgramCx<'_>) -> Self {
-        let by_address = |it: &ObjectUses<'_>| matches!(it.object.class, Class::Output | Class::Memory | Class::Data);
-        let gives = |missing: Mode| {
-            move |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset))
-        };
-        let addressed = |missing: Mode| {
-            cx.program
-                .objects
-                .iter()
-                .filter(|it| by_address(it))
-                .any(|it| it.with_mode(gives(missing)).next().is_some())
-        };
-        Self {
-            by_symbol: [Mode::Set, Mode::Reset].map(|it| cx.program.has_unresolved(gives(it))),
-            by_address: [Mode::Set, Mode::Reset].map(addressed),
-        }
-    }
-
-    fn may_hold(&self, class: Class, missing: Mode) -> bool {
-        let [set, reset] = if class == Class::Symbol { self.by_address } else { self.by_symbol };
-        if missing == Mode::Set { set } else { reset }
-    }
 }

@@ -331,6 +331,8 @@ pub struct Transition<'a> {
     pub targets: Vec<u32>,
     /// Whether each of its ends is a step of the chart, and it has both.
     pub is_whole: bool,
+    /// Where the connectors of its unit begin in [`Chart::connectors`].
+    connectors: usize,
 }
 
 impl Transition<'_> {
@@ -388,6 +390,16 @@ pub struct Chart<'a> {
 }
 
 impl<'a> Chart<'a> {
+    /// The connectors that stand in the place of steps before, or behind, a transition, as indices into
+    /// [`Self::connectors`].
+    pub fn connectors_at(&self, transition: &Transition<'_>, ends: &[Node]) -> Vec<usize> {
+        let index = |node: &Node| match node {
+            Node::Connector(at) => Some(transition.connectors + *at as usize).filter(|&it| it < self.connectors.len()),
+            Node::Step(_) | Node::Named(_) => None,
+        };
+        ends.iter().filter_map(index).collect()
+    }
+
     /// The first step of a name, an index into [`Self::steps`].
     pub fn step_named(&self, name: &StepName) -> Option<u32> {
         self.by_name.get(name).copied()
@@ -524,7 +536,8 @@ pub fn join<'a>(units: &[&'a UnitFacts]) -> Vec<Chart<'a>> {
                 let whole = |ends: &[Option<u32>]| !ends.is_empty() && ends.iter().all(Option::is_some);
                 let is_whole = whole(&sources) && whole(&targets);
                 let known = |ends: Vec<Option<u32>>| ends.into_iter().flatten().collect();
-                Transition { unit, it, sources: known(sources), targets: known(targets), is_whole }
+                let connectors = chart.connectors.len();
+                Transition { unit, it, sources: known(sources), targets: known(targets), is_whole, connectors }
             })
             .collect();
         let mut connectors: Vec<Connector<'a>> = part

@@ -63,3 +63,32 @@ pub fn conflict<'a>(
     let others = uses.iter().enumerate().filter(|it| it.0 != at).map(|it| *it.1).collect();
     Some((uses[at], others))
 }
+
+/// Writes that may be the missing ones under another name: of a symbol that nothing resolves for an address, and of any
+/// address for such a symbol.
+pub struct Hidden {
+    by_symbol: [bool; 2],
+    by_address: [bool; 2],
+}
+
+impl Hidden {
+    pub fn new(program: &ProgramIndex<'_>) -> Self {
+        let by_address = |it: &ObjectUses<'_>| matches!(it.object.class, Class::Output | Class::Memory | Class::Data);
+        let gives = |missing: Mode| {
+            move |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset))
+        };
+        let addressed = |missing: Mode| {
+            program.objects.iter().filter(|it| by_address(it)).any(|it| it.with_mode(gives(missing)).next().is_some())
+        };
+        Self {
+            by_symbol: [Mode::Set, Mode::Reset].map(|it| program.has_unresolved(gives(it))),
+            by_address: [Mode::Set, Mode::Reset].map(addressed),
+        }
+    }
+
+    /// Whether a bit of the class may be written so: set or reset, as what is `missing`, or assigned.
+    pub fn may_hold(&self, class: Class, missing: Mode) -> bool {
+        let [set, reset] = if class == Class::Symbol { self.by_address } else { self.by_symbol };
+        if missing == Mode::Set { set } else { reset }
+    }
+}

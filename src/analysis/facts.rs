@@ -15,7 +15,7 @@ use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
-use crate::model::object::{Class, Object};
+use crate::model::object::{Class, Object, Type};
 use crate::model::unit::{Access, Actual, Call, Callee, Formal, Mode, Section, StatementKind};
 use crate::syntax::Language;
 
@@ -46,6 +46,8 @@ pub struct Use {
     pub own: bool,
     /// For an assignment: its value depends on the object's own, as that of a circuit that holds itself does.
     pub holds: bool,
+    /// For an assignment: its value is made of inputs, outputs and memory bits alone, so that no time ends it.
+    pub of_bits: bool,
     /// Network or sentence.
     pub network: u32,
     /// For an actual parameter: the call, an index into the unit's calls, and the formal parameter.
@@ -235,6 +237,7 @@ impl UnitFacts {
                     constant,
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
+                    of_bits: value.is_some_and(|it| is_of_bits(model, it)),
                     network: statement.map_or(0, |it| it.network),
                     parameter: access.parameter.clone().zip(called).map(|(formal, call)| (call, formal)),
                 }
@@ -300,6 +303,7 @@ impl UnitFacts {
             constant: None,
             own: false,
             holds: false,
+            of_bits: false,
             network: 0,
             parameter: None,
         };
@@ -322,6 +326,35 @@ fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
             Some(Expr::Not(a)) => stack.push(*a),
             Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b)) => stack.extend([*a, *b]),
             Some(_) => {}
+        }
+    }
+    false
+}
+
+/// Whether a value is made of inputs, outputs and memory bits alone, and of few of them.
+fn is_of_bits(model: &UnitModel, value: ExprId) -> bool {
+    const MAX_TERMS: usize = 128;
+    let mut stack = vec![value];
+    let mut reads = false;
+    for _ in 0..MAX_TERMS {
+        match stack.pop().map(|it| model.exprs.get(it)) {
+            None => return reads,
+            Some(Expr::Read { object, .. }) => {
+                let object = model.object(*object);
+                let is_bit = match object.class {
+                    Class::Input | Class::Output | Class::Memory => object.ty == Type::Bool,
+                    // An item of a block may be a timer's output.
+                    Class::Symbol => !object.text.contains('.'),
+                    _ => false,
+                };
+                if !is_bit {
+                    return false;
+                }
+                reads = true;
+            }
+            Some(Expr::Not(a)) => stack.push(*a),
+            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b)) => stack.extend([*a, *b]),
+            Some(_) => return false,
         }
     }
     false

@@ -507,6 +507,12 @@ impl<'a> ProgramIndex<'a> {
         self.contexts[unit as usize] == [Context::Startup]
     }
 
+    /// Whether the unit runs in events alone, each of which something raises.
+    pub fn is_in_event(&self, unit: u32) -> bool {
+        let contexts = &self.contexts[unit as usize];
+        !contexts.is_empty() && contexts.iter().all(|it| matches!(it, Context::Event(_)))
+    }
+
     /// Whether some unit writes a place computed at run time that may lie in the area: the absence of another write says
     /// nothing then.
     pub fn writes_indirectly(&self, area: &Area) -> bool {

@@ -61,6 +61,24 @@ pub struct ChartCapacity {
     pub default: Option<(Limit, Limit)>,
 }
 
+/// System bits that command a chart as a whole: they initialise, clear or freeze it.
+#[derive(Debug, PartialEq, Eq)]
+pub struct ChartBits {
+    pub bits: Range,
+    pub cleared: &'static [ClearedBit],
+    /// Who says that nothing but a set coil may write them.
+    pub only_set: Option<&'static str>,
+}
+
+/// A system bit that the system itself resets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClearedBit {
+    pub bit: u32,
+    /// Whether the program must not reset it; else there is just no need to.
+    pub is_forbidden: bool,
+    pub source: &'static str,
+}
+
 /// The controller that a program is for, as far as it is known, and what the application configures on it.
 ///
 /// Of an unknown controller, a figure is the one that holds for every controller of the family: the largest count.
@@ -327,6 +345,15 @@ impl Target {
         match self.family {
             Family::Pl7 => Some((pl7::STEP_TIMES, pl7::STEP_TIME_UNIT_MS)),
             Family::Pl72 => Some((pl72::STEP_TIMES_S, pl72::STEP_TIME_UNIT_MS)),
+            Family::Step7 => None,
+        }
+    }
+
+    /// The system bits that command a chart as a whole; `None` where there are no charts.
+    pub const fn chart_bits(&self) -> Option<&'static ChartBits> {
+        match self.family {
+            Family::Pl7 => Some(&pl7::CHART_BITS),
+            Family::Pl72 => Some(&pl72::CHART_BITS),
             Family::Step7 => None,
         }
     }

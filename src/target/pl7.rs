@@ -5,7 +5,7 @@ mod memory;
 
 pub use memory::Memory;
 
-use super::{Counted, Limit, Numbered, Range};
+use super::{ChartBits, ClearedBit, Counted, Limit, Numbered, Range};
 
 /// Labels `%Li`.
 pub const LABELS: Range = Range::new(0, 999, "PL7:2676");
@@ -41,6 +41,15 @@ pub const ANALOG_OUTPUT_GROUP_MICRO: Limit = Limit::new(2, "PL7:2441");
 pub const ANALOG_GROUP_PREMIUM: Limit = Limit::new(4, "PL7:2448");
 /// Power failures below this many milliseconds pass unseen: of an alternating and of a direct supply (also PL7:1778).
 pub const UNSEEN_POWER_FAILURE_MS: (Limit, Limit) = (Limit::new(10, "PL7:1761"), Limit::new(1, "PL7:1761"));
+/// What initialises, clears and freezes charts, and resets macro-steps.
+pub static CHART_BITS: ChartBits = ChartBits {
+    bits: Range::new(21, 24, "PL7:4939"),
+    cleared: &[
+        ClearedBit { bit: 22, is_forbidden: false, source: "PL7:5039" },
+        ClearedBit { bit: 24, is_forbidden: true, source: "PL7:5094" },
+    ],
+    only_set: None,
+};
 /// Times of steps, in units of 100 ms.
 pub const STEP_TIMES: Range = Range::new(0, 9999, "PL7:4248");
 pub const STEP_TIME_UNIT_MS: Limit = Limit::new(100, "PL7:4248");

@@ -36,7 +36,7 @@ pub use power::{
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
 
-use super::{Counted, Limit, Numbered, Range};
+use super::{ChartBits, Counted, Limit, Numbered, Range};
 
 /// Watchdog of the master task, which is not periodic, in milliseconds (also PL72:534).
 pub const WATCHDOG_MS: Limit = Limit::new(150, "PL72:477");
@@ -47,6 +47,8 @@ pub const LABELS: Range = Range::new(1, 999, "PL72:600");
 pub const JUMPS: Limit = Limit::new(42, "PL72:418");
 /// Characters of the comment of a network, an action or a receptivity (also PL72:1425, PL72:1481).
 pub const COMMENT_LENGTH: Limit = Limit::new(15, "PL72:601");
+/// Characters of the comment of a step.
+pub const STEP_COMMENT_LENGTH: Limit = Limit::new(15, "PL72:1425");
 /// Lines of a network, and contacts in a line of its test zone.
 pub const LADDER_LINES: Limit = Limit::new(4, "PL72:606");
 pub const LADDER_CONTACTS: Limit = Limit::new(9, "PL72:606");
@@ -74,6 +76,9 @@ pub const COLUMN_STEPS: Limit = Limit::new(6, "PL72:1342");
 pub const COLUMN_TRANSITIONS: Limit = Limit::new(6, "PL72:1343");
 pub const COLUMN_ORIGINS: Limit = Limit::new(1, "PL72:1344");
 pub const COLUMN_DESTINATIONS: Limit = Limit::new(1, "PL72:1345");
+/// What initialises, clears and prepositions or freezes charts. All are reset by the system.
+pub static CHART_BITS: ChartBits =
+    ChartBits { bits: Range::new(21, 23, "PL72:1824"), cleared: &[], only_set: Some("PL72:1824") };
 /// Lines of a page: those of its origin connectors, steps, transitions and destination connectors.
 pub const CHART_LINES: Limit = Limit::new(
     COLUMN_ORIGINS.value + COLUMN_STEPS.value + COLUMN_TRANSITIONS.value + COLUMN_DESTINATIONS.value,
