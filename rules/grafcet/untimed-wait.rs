@@ -1,10 +1,11 @@
 //! G029: a step that is left on a sensor alone, and whose time nothing checks.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
 use crate::analysis::chart::{Chart, FactReceptivity, Transition};
 use crate::analysis::facts::FactObject;
+use crate::analysis::flow::Flow;
 use crate::analysis::program::ObjectUses;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::chart::StepKind;
@@ -20,7 +21,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if cx.program.charts().is_empty() {
         return;
     }
-    let flow = Flow::new(cx);
+    let flow = Flow::new(cx.program);
     for chart in cx.program.charts().iter().filter(|it| !it.has_gaps) {
         let checked: FxHashSet<u32> = times().filter_map(|it| chart.step_at(&it.object.footprint)).collect();
         let leaving = chart.leaving();
@@ -67,58 +68,6 @@ fn acts<'a>(cx: &ProgramCx<'a>, chart: &Chart<'a>, step: u32) -> bool {
     let is_bit =
         |it: &&ObjectUses<'_>| it.object.class == Class::Step && chart.step_at(&it.object.footprint) == Some(step);
     has_action || cx.program.objects.iter().filter(is_bit).any(ObjectUses::is_read)
-}
-
-/// Which networks read an object, and what each writes and whether it drives a block.
-struct Flow {
-    readers: Vec<Vec<(u32, u32)>>,
-    networks: FxHashMap<(u32, u32), Network>,
-}
-
-#[derive(Default)]
-struct Network {
-    /// Indices of objects of the program.
-    writes: Vec<u32>,
-    drives: bool,
-}
-
-impl Flow {
-    fn new(cx: &ProgramCx<'_>) -> Self {
-        let mut flow = Self { readers: Vec::new(), networks: FxHashMap::default() };
-        for (at, uses) in (0..).zip(&cx.program.objects) {
-            let mut readers = Vec::new();
-            for it in &uses.uses {
-                let place = (it.unit, it.it.network);
-                if it.mode.reads() {
-                    readers.push(place);
-                }
-                if it.mode.writes() {
-                    flow.networks.entry(place).or_default().writes.push(at);
-                }
-                if matches!(it.mode, Mode::Drive(_)) {
-                    flow.networks.entry(place).or_default().drives = true;
-                }
-            }
-            flow.readers.push(readers);
-        }
-        flow
-    }
-
-    /// Whether a block is driven by what depends on one of some objects, from network to network.
-    fn reaches_block(&self, from: Vec<u32>) -> bool {
-        let mut seen: FxHashSet<u32> = from.iter().copied().collect();
-        let mut open = from;
-        while let Some(at) = open.pop() {
-            let readers = self.readers.get(at as usize).into_iter().flatten();
-            for network in readers.filter_map(|it| self.networks.get(it)) {
-                if network.drives {
-                    return true;
-                }
-                open.extend(network.writes.iter().filter(|it| seen.insert(**it)));
-            }
-        }
-        false
-    }
 }
 
 /// Whether a timer runs with the step: its actions drive a block or call something, or what depends on its bit or on what
