@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
-use crate::analysis::chart::{Action, Chart, Left};
+use crate::analysis::chart::{Action, Chart, Left, Transition};
 use crate::analysis::facts::FactObject;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::chart::ActionKind;
@@ -12,6 +12,7 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for chart in cx.program.charts() {
+        let leaving = chart.leaving();
         let mut seen: FxHashSet<&_> = FxHashSet::default();
         for (at, step) in (0..).zip(&chart.steps) {
             // A step that is drawn twice has its actions once.
@@ -19,7 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 continue;
             }
             within_step(cx, chart, at, sink);
-            from_step(cx, chart, at, sink);
+            from_step(cx, chart, at, &leaving[at as usize], sink);
         }
     }
 }
@@ -43,10 +44,15 @@ fn within_step<'a>(cx: &ProgramCx<'a>, chart: &Chart<'a>, step: u32, sink: &mut 
 }
 
 /// The action at deactivation, and those of the steps that come next. What is reset and set again stays on, as is meant.
-fn from_step<'a>(cx: &ProgramCx<'a>, chart: &Chart<'a>, step: u32, sink: &mut Sink<'_, Site>) {
+fn from_step<'a>(
+    cx: &ProgramCx<'a>,
+    chart: &Chart<'a>,
+    step: u32,
+    leaving: &[&Transition<'a>],
+    sink: &mut Sink<'_, Site>,
+) {
     let actions = cx.program.actions();
     let Some(first) = actions.only(chart, step, ActionKind::Deactivation) else { return };
-    let leaving: Vec<_> = chart.transitions.iter().filter(|it| it.sources.contains(&step)).collect();
     if leaving.is_empty() || leaving.iter().any(|it| !it.is_whole) {
         return;
     }
@@ -91,7 +97,15 @@ fn bits<'a>(cx: &ProgramCx<'a>, action: Action<'a>) -> impl Iterator<Item = (&'a
     let is_bit = |it: &FactObject| {
         matches!(it.object.class, Class::Memory | Class::Output | Class::Symbol) && it.object.is_fixed()
     };
-    action.it.left.iter().filter_map(|it| Some((objects.get(it.object as usize)?, it))).filter(move |it| is_bit(it.0))
+    /// Of an action that writes more bits than this, the first.
+    const MOST: usize = 256;
+    action
+        .it
+        .left
+        .iter()
+        .take(MOST)
+        .filter_map(|it| Some((objects.get(it.object as usize)?, it)))
+        .filter(move |it| is_bit(it.0))
 }
 
 /// Whether something may see the bit before it is undone: the actions themselves, or what they can call.

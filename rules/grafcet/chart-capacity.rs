@@ -1,8 +1,10 @@
 //! G019: more of a chart than the controller holds.
 
+use rustc_hash::FxHashSet;
+
 use crate::analysis::Site;
 use crate::analysis::chart::{Chart, Connector};
-use crate::analysis::reach::{Part, Study};
+use crate::analysis::reach::{Node, Part, Study};
 use crate::lint::{ProgramCx, Severity, Sink};
 use crate::model::chart::{ConnectorKind, StepKind};
 use crate::target::{ChartCapacity, Limit};
@@ -55,9 +57,15 @@ fn at_once(cx: &ProgramCx<'_>, capacity: &ChartCapacity, sink: &mut Sink<'_, Sit
         ("active steps", configured.active_steps, active, capacity.active_steps, "active-steps"),
         ("valid transitions", configured.valid_transitions, valid, capacity.valid_transitions, "valid-transitions"),
     ];
-    let counts: [Count; 2] = [Count::new(cx, active_steps), Count::new(cx, valid_transitions)];
-    for ((what, configured, default, most, key), count) in limits.into_iter().zip(counts) {
+    let counts: [fn(&Study<'_, '_>, &Part, u32) -> u32; 2] = [active_steps, valid_transitions];
+    for ((what, configured, default, most, key), of) in limits.into_iter().zip(counts) {
         let limit = configured.or(default.map(|it| it.value)).map_or(most.value, |it| it.min(most.value));
+        // Fewer that there are at all are never too many.
+        let drawn = cx.studies().iter().map(|it| it.net.nodes.len().max(it.net.crossings.len())).sum::<usize>();
+        if drawn <= limit as usize {
+            continue;
+        }
+        let count = Count::new(cx, of);
         let Some((place, others)) = count.steps.split_first().filter(|_| count.sum > limit) else { continue };
         let message = format!("{} {what} are reached at one time, and {limit} are kept", count.sum);
         let also = others.iter().map(|it| (*it, "active at the same time".to_owned()));
@@ -122,8 +130,8 @@ fn active_steps(study: &Study<'_, '_>, part: &Part, situation: u32) -> u32 {
 }
 
 fn valid_transitions(study: &Study<'_, '_>, part: &Part, situation: u32) -> u32 {
-    let situation = &part.all.situations[situation as usize];
-    let valid =
-        part.component.crossings.iter().filter(|it| study.net.waits(&part.component, situation, **it).0.is_empty());
+    let active: FxHashSet<Node> = study.net.active(&part.component, &part.all.situations[situation as usize]).collect();
+    let crossings = part.component.crossings.iter().filter_map(|&it| study.net.crossings.get(it));
+    let valid = crossings.filter(|it| it.from.iter().all(|it| active.contains(it)));
     u32::try_from(valid.count()).unwrap_or(u32::MAX)
 }

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
-use crate::analysis::reach::{Guarded, Node, Part, Study};
+use crate::analysis::reach::{Guarded, MAX_CAUSES, Node, Part, Study};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
@@ -18,11 +18,10 @@ fn judge(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<'_, Site>) {
     let net = &study.net;
     let (component, reached) = (&part.component, &part.own);
     let mut seen: FxHashSet<Option<usize>> = FxHashSet::default();
-    for &dead in &reached.dead {
+    for &dead in reached.dead.iter().take(MAX_CAUSES) {
         let situation = &reached.situations[dead as usize];
         let active: Vec<Node> = net.active(component, situation).collect();
-        let leaves = |it: &&usize| net.crossings[**it].from.iter().any(|it| active.contains(it));
-        let out: Vec<usize> = component.crossings.iter().filter(leaves).copied().collect();
+        let out: Vec<usize> = active.iter().flat_map(|it| net.leaving(*it).iter().copied()).collect();
         // A transition that is valid and never crossed is the affair of the rules about its receptivity.
         let is_valid = |it: &usize| net.waits(component, situation, *it).0.is_empty();
         if out.iter().any(is_valid) {

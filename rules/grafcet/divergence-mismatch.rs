@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
-use crate::analysis::reach::{Part, Study};
+use crate::analysis::reach::{MAX_CAUSES, Node, Part, Study};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
@@ -21,7 +21,7 @@ fn parallel_as_alternatives(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<
     steps.sort_unstable();
     steps.dedup_by_key(|it| it.0);
     let mut openings = FxHashSet::default();
-    for (step, situation) in steps {
+    for (step, situation) in steps.into_iter().take(MAX_CAUSES) {
         let Some((opening, [a, b])) = net.opened_in_parallel(&part.component, step) else { continue };
         if !openings.insert(opening) {
             continue;
@@ -43,9 +43,13 @@ fn parallel_as_alternatives(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<
 fn alternatives_as_parallel(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<'_, Site>) {
     let net = &study.net;
     let mut seen = FxHashSet::default();
-    for &dead in &part.own.dead {
+    for &dead in part.own.dead.iter().take(MAX_CAUSES) {
         let situation = &part.own.situations[dead as usize];
+        let active: FxHashSet<Node> = net.active(&part.component, situation).collect();
         for &crossing in &part.component.crossings {
+            if !net.crossings[crossing].from.iter().any(|it| active.contains(it)) {
+                continue;
+            }
             let (missing, held) = net.waits(&part.component, situation, crossing);
             if missing.is_empty() || held.is_empty() || seen.contains(&crossing) {
                 continue;

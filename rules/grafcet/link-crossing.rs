@@ -1,19 +1,21 @@
 //! G028: a link that crosses the bar of steps that are activated or deactivated together.
 
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::chart::{Cell, Chart, LinkKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    /// A page has room for fewer bars than this.
+    const MOST: usize = 256;
     let Some(chart) = &cx.model.chart else { return };
     let bars = bars(chart);
     if bars.is_empty() {
         return;
     }
     let neighbours = chart.vertical_joins();
-    for bar in &bars {
+    for bar in bars.iter().take(MOST) {
         let mut crossing: Vec<TextRange> = Vec::new();
         for link in &chart.links {
             // The lines of one junction are one drawing.
@@ -50,7 +52,7 @@ struct Bar {
     first: u32,
     last: u32,
     /// Cells of the elements that it joins.
-    ends: Vec<Cell>,
+    ends: FxHashSet<Cell>,
     opens: bool,
     range: TextRange,
 }
@@ -80,7 +82,7 @@ fn bars(chart: &Chart) -> Vec<Bar> {
         let Some(line) = line else { continue };
         let at = *index.entry((opens, transition)).or_insert_with(|| {
             let column = transition.column;
-            let ends = vec![transition];
+            let ends = FxHashSet::from_iter([transition]);
             bars.push(Bar { page: transition.page, line, first: column, last: column, ends, opens, range: link.range });
             bars.len() - 1
         });
@@ -88,7 +90,7 @@ fn bars(chart: &Chart) -> Vec<Bar> {
         for step in steps.iter().filter(|it| it.page == bar.page) {
             bar.first = bar.first.min(step.column);
             bar.last = bar.last.max(step.column);
-            bar.ends.push(*step);
+            bar.ends.insert(*step);
         }
     }
     bars

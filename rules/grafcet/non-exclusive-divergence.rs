@@ -8,20 +8,26 @@ use crate::lint::{ProgramCx, Sink};
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for study in cx.studies() {
         for part in &study.parts {
-            for (at, &later) in part.component.crossings.iter().enumerate() {
-                divergence(study, part, &part.component.crossings[..at], later, sink);
+            for &later in &part.component.crossings {
+                divergence(study, part, later, sink);
             }
         }
     }
 }
 
 /// Compares a transition with those before it that leave the same step.
-fn divergence(study: &Study<'_, '_>, part: &Part, before: &[usize], later: usize, sink: &mut Sink<'_, Site>) {
+fn divergence(study: &Study<'_, '_>, part: &Part, later: usize, sink: &mut Sink<'_, Site>) {
+    /// Of more branches than this, those before the first ones are not compared.
+    const MOST: usize = 32;
     let net = &study.net;
     let from = &net.crossings[later].from;
-    let beside = before.iter().filter(|&&it| net.crossings[it].from.iter().any(|it| from.contains(it)));
+    let mut beside: Vec<usize> =
+        from.iter().flat_map(|it| net.leaving(*it).iter().copied().take_while(|it| *it < later).take(MOST)).collect();
+    beside.sort_unstable();
+    beside.dedup();
     let found: Vec<(usize, Witness)> = beside
-        .filter_map(|&it| match net.can_be(&part.component, &part.all, &[(it, true), (later, true)]) {
+        .into_iter()
+        .filter_map(|it| match net.can_be(&part.component, &part.all, &[(it, true), (later, true)]) {
             Answer::Possible(witness) => Some((it, witness)),
             Answer::Never | Answer::NotDecided => None,
         })

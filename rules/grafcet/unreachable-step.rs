@@ -22,19 +22,17 @@ fn judge(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<'_, Site>) {
     let reached: FxHashSet<Node> = part.all.situations.iter().flat_map(|it| net.active(&part.component, it)).collect();
     let never: Vec<Node> = part.component.nodes.iter().copied().filter(|it| !reached.contains(it)).collect();
     // What comes behind a step that is never active has the same cause.
-    let into = |node: Node| part.component.crossings.iter().filter(move |&&it| net.crossings[it].to.contains(&node));
-    let first: Vec<Node> = never
-        .iter()
-        .copied()
-        .filter(|&node| into(node).any(|&it| net.crossings[it].from.iter().any(|it| reached.contains(it))))
-        .collect();
+    let is_first = |&node: &Node| {
+        net.entering(node).iter().any(|&it| net.crossings[it].from.iter().any(|it| reached.contains(it)))
+    };
+    let first: Vec<Node> = never.iter().copied().filter(is_first).collect();
     let Some(&primary) = first.first().or(never.first()) else { return };
     let message = format!("step `{}` is never active", net.name(primary));
     let others = never.iter().filter(|it| **it != primary);
     let mut finding = sink
         .report(net.step(primary).site(), message)
         .related_all(others.map(|&it| (net.step(it).site(), format!("nor is step `{}`", net.name(it)))));
-    for &it in into(primary) {
+    for &it in net.entering(primary) {
         finding = finding.related(net.transition(it).site(), "never crossed");
     }
 }

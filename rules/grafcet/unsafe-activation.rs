@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
-use crate::analysis::reach::Node;
+use crate::analysis::reach::{MAX_CAUSES, Node};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
@@ -11,10 +11,13 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let net = &study.net;
         for part in &study.parts {
             let mut seen: FxHashSet<Node> = FxHashSet::default();
-            for &(situation, crossing, step) in &part.own.lost {
-                // Parallel branches that come together as alternatives are one rule's affair, and what follows from it.
-                let is_mismatch = |step| net.opened_in_parallel(&part.component, step).is_some();
-                if part.own.lost.iter().any(|it| is_mismatch(it.2)) || !seen.insert(step) {
+            // Parallel branches that come together as alternatives are one rule's affair, and so is what follows from it.
+            let lost = || part.own.lost.iter().take(MAX_CAUSES);
+            if lost().any(|it| net.opened_in_parallel(&part.component, it.2).is_some()) {
+                continue;
+            }
+            for &(situation, crossing, step) in lost() {
+                if !seen.insert(step) {
                     continue;
                 }
                 let message = format!("step `{}` can be activated while it is active", net.name(step));

@@ -420,6 +420,19 @@ impl<'a> Chart<'a> {
         self.step_named(&name)
     }
 
+    /// The transitions that leave each step.
+    pub fn leaving(&self) -> Vec<Vec<&Transition<'a>>> {
+        let mut leaving = vec![Vec::new(); self.steps.len()];
+        for it in &self.transitions {
+            for &source in &it.sources {
+                if let Some(list) = leaving.get_mut(source as usize) {
+                    list.push(it);
+                }
+            }
+        }
+        leaving
+    }
+
     /// Connectors without the other one of their pair (PL7:4392): one of the other kind that goes on from the same step to
     /// the same step. What a connector is not joined with, because it is misplaced, is not asked for.
     pub fn unpaired(&self) -> impl Iterator<Item = &Connector<'a>> {

@@ -22,6 +22,12 @@ use crate::model::unit::Mode;
 /// A chart with more situations than this is not looked at to the end.
 const MAX_SITUATIONS: usize = 20_000;
 
+/// Of more divergences than this, the cause of what is wrong behind them is not looked for.
+const MOST_OPENINGS: usize = 256;
+
+/// Of so many situations without an end, and lost activations, the cause is looked for.
+pub const MAX_CAUSES: usize = 32;
+
 /// Of more transitions than this that depend on one another, only single ones and pairs are crossed.
 const MAX_TOGETHER: usize = 5;
 
@@ -78,6 +84,9 @@ pub struct Net<'p, 'a> {
     family: Family,
     /// Objects that a receptivity depends on, by groups of objects that share memory.
     supports: Vec<Vec<u32>>,
+    /// By node: the crossings that it is before, and those that it is behind.
+    leaving: Vec<Vec<usize>>,
+    entering: Vec<Vec<usize>>,
     /// Reads of step bits of this net, by node.
     step_reads: FxHashMap<Node, ExprId>,
 }
@@ -172,6 +181,8 @@ impl<'p, 'a> Net<'p, 'a> {
             objects: Vec::new(),
             family: program.family,
             supports: Vec::new(),
+            leaving: Vec::new(),
+            entering: Vec::new(),
             step_reads: FxHashMap::default(),
         };
         for (at, chart) in net.charts.iter().enumerate() {
@@ -200,6 +211,16 @@ impl<'p, 'a> Net<'p, 'a> {
     pub fn transition(&self, crossing: usize) -> &'p Transition<'a> {
         let it = &self.crossings[crossing];
         &self.charts[it.chart].transitions[it.transition]
+    }
+
+    /// Crossings that a step is before, in the order of the program.
+    pub fn leaving(&self, node: Node) -> &[usize] {
+        &self.leaving[node as usize]
+    }
+
+    /// Crossings that a step is behind, in the order of the program.
+    pub fn entering(&self, node: Node) -> &[usize] {
+        &self.entering[node as usize]
     }
 
     /// A step as a message names it: `3`, of an expansion `M2.3`.
@@ -246,6 +267,11 @@ impl<'p, 'a> Net<'p, 'a> {
             }
         }
         (self.exprs, self.objects, self.crossings) = (exprs, ids.objects, crossings);
+        (self.leaving, self.entering) = (vec![Vec::new(); self.nodes.len()], vec![Vec::new(); self.nodes.len()]);
+        for (at, it) in self.crossings.iter().enumerate() {
+            it.from.iter().for_each(|node| self.leaving[*node as usize].push(at));
+            it.to.iter().for_each(|node| self.entering[*node as usize].push(at));
+        }
         for (at, object) in (0..).zip(&self.objects) {
             if let Some(read) = self.exprs.find_read(ObjectId(at), 0)
                 && object.class == Class::Step
@@ -259,13 +285,21 @@ impl<'p, 'a> Net<'p, 'a> {
 
     fn find_supports(&mut self) {
         // Objects that share memory depend on one another.
-        let group: Vec<u32> = (0..)
-            .zip(&self.objects)
-            .map(|(at, it): (u32, _)| {
-                let overlaps = |other: &&Object| other.footprint.overlaps(&it.footprint);
-                self.objects.iter().position(overlaps).and_then(|it| u32::try_from(it).ok()).unwrap_or(at)
-            })
-            .collect();
+        let mut order: Vec<usize> = (0..self.objects.len()).collect();
+        order.sort_by_key(|&it| (&self.objects[it].footprint.area, self.objects[it].footprint.start));
+        let mut group: Vec<u32> = (0..).take(self.objects.len()).collect();
+        let mut last: Option<(usize, u32)> = None;
+        for at in order {
+            let place = &self.objects[at].footprint;
+            let (first, end) = match last {
+                Some((first, end)) if self.objects[first].footprint.area == place.area && place.start < end => {
+                    (first, end.max(place.end()))
+                }
+                _ => (at, place.end()),
+            };
+            group[at] = as_index(first);
+            last = Some((first, end));
+        }
         let support = |it: &Crossing| match it.guard {
             Guarded::By(guard) => {
                 let mut objects: Vec<u32> = Vec::new();
@@ -531,10 +565,8 @@ impl<'p, 'a> Net<'p, 'a> {
             if Some(node) == end {
                 continue;
             }
-            for (at, it) in self.crossings.iter().enumerate() {
-                if it.from.contains(&node) && !without.contains(&at) {
-                    stack.extend(it.to.iter().copied().filter(|it| seen.insert(*it)));
-                }
+            for at in self.leaving[node as usize].iter().filter(|it| !without.contains(it)) {
+                stack.extend(self.crossings[*at].to.iter().copied().filter(|it| seen.insert(*it)));
             }
         }
         seen
@@ -543,9 +575,9 @@ impl<'p, 'a> Net<'p, 'a> {
     /// Of a step that is activated while it is active: the transition that opens parallel branches, two of which come
     /// together at the step by transitions of their own, as alternative ones do.
     pub fn opened_in_parallel(&self, component: &Component, step: Node) -> Option<(usize, [usize; 2])> {
-        let into: Vec<usize> =
-            component.crossings.iter().copied().filter(|&it| self.crossings[it].to.contains(&step)).collect();
-        for &opening in component.crossings.iter().filter(|&&it| self.crossings[it].to.len() > 1) {
+        let into = self.entering(step);
+        let opens = |it: &&usize| self.crossings[**it].to.len() > 1;
+        for &opening in component.crossings.iter().filter(opens).take(MOST_OPENINGS) {
             let branches: Vec<FxHashSet<Node>> =
                 self.crossings[opening].to.iter().map(|&it| self.after_steps(&[it], &[opening], Some(step))).collect();
             let leads = |branch: &FxHashSet<Node>, crossing: usize| {
@@ -566,13 +598,9 @@ impl<'p, 'a> Net<'p, 'a> {
     /// Of a transition that waits for steps on several branches: the step whose alternative branches they are.
     pub fn opened_as_alternatives(&self, component: &Component, crossing: usize) -> Option<Node> {
         let from = &self.crossings[crossing].from;
-        component.nodes.iter().copied().find(|&step| {
-            let out: Vec<usize> = component
-                .crossings
-                .iter()
-                .copied()
-                .filter(|&it| it != crossing && self.crossings[it].from.contains(&step))
-                .collect();
+        let opens = |it: &Node| self.leaving(*it).len() > 1;
+        component.nodes.iter().copied().filter(opens).take(MOST_OPENINGS).find(|&step| {
+            let out: Vec<usize> = self.leaving(step).iter().copied().filter(|it| *it != crossing).collect();
             let branches: Vec<FxHashSet<Node>> =
                 out.iter().map(|&it| self.after_steps(&self.crossings[it].to, &[crossing, it], Some(step))).collect();
             // Each branch leads to one of the steps, and none to all of them.
@@ -586,10 +614,28 @@ impl<'p, 'a> Net<'p, 'a> {
 
     /// Whether steps lead back to themselves.
     pub fn has_loop(&self, component: &Component) -> bool {
-        component.crossings.iter().any(|&it| {
-            let after = self.after_steps(&self.crossings[it].to, &[], None);
-            self.crossings[it].from.iter().any(|it| after.contains(it))
-        })
+        // What is left when steps that nothing leads to are taken away again and again.
+        let mut into: FxHashMap<Node, usize> = FxHashMap::default();
+        for it in component.crossings.iter().map(|it| &self.crossings[*it]) {
+            it.to.iter().for_each(|node| *into.entry(*node).or_default() += it.from.len());
+        }
+        let is_first = |node: &Node| into.get(node).is_none_or(|it| *it == 0);
+        let mut open: Vec<Node> = component.nodes.iter().copied().filter(is_first).collect();
+        let mut taken = 0;
+        while let Some(node) = open.pop() {
+            taken += 1;
+            for &at in &self.leaving[node as usize] {
+                for &next in &self.crossings[at].to {
+                    if let Some(count) = into.get_mut(&next) {
+                        *count -= 1;
+                        if *count == 0 {
+                            open.push(next);
+                        }
+                    }
+                }
+            }
+        }
+        taken < component.nodes.len()
     }
 }
 
