@@ -1,9 +1,11 @@
 //! N005: a section, subroutine, block or step without a comment.
 
 use crate::analysis::Site;
+use crate::analysis::chart::FactStep;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::ProgramIndex;
 use crate::lint::{ProgramCx, Sink};
+use crate::model::chart::StepName;
 use crate::model::entity::{BlockKind, Entity, Part};
 use crate::syntax::Language;
 
@@ -17,10 +19,17 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             continue;
         }
         if let Some(chart) = facts.chart.as_ref().filter(|it| it.defines && !it.has_gaps) {
-            let mut steps = chart.steps.iter().filter(|it| !it.commented).map(|it| (&it.text, it.anchor));
-            if let Some((text, anchor)) = steps.next() {
-                let others = steps.map(|(text, anchor)| (Site { unit, anchor }, format!("nor has step {text}")));
-                sink.report(Site { unit, anchor }, format!("the step {text} has no comment")).related_all(others);
+            // First and last steps of expansions have no number.
+            let name = |it: &FactStep| match &it.name {
+                Some(StepName::In) => "the first step".to_owned(),
+                Some(StepName::Out) => "the last step".to_owned(),
+                _ => format!("step `{}`", it.text),
+            };
+            let mut steps = chart.steps.iter().filter(|it| !it.commented);
+            if let Some(first) = steps.next() {
+                let site = |it: &FactStep| Site { unit, anchor: it.anchor };
+                let others = steps.map(|it| (site(it), format!("nor has {}", name(it))));
+                sink.report(site(first), format!("{} has no comment", name(first))).related_all(others);
             }
         } else if let Some(what) = kind(&facts.entity)
             && !facts.commented

@@ -46,21 +46,6 @@ impl Range {
     }
 }
 
-/// What all charts of a program may have at most: in their drawing, and at one time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ChartCapacity {
-    /// Those of expansions too, but for `IN` and `OUT`.
-    pub steps: Limit,
-    pub transitions: Limit,
-    pub and_convergences: Option<Limit>,
-    /// Origin and destination.
-    pub connectors: Option<(Limit, Limit)>,
-    pub active_steps: Limit,
-    pub valid_transitions: Limit,
-    /// The last two as they are unless configured, of a known controller where they are configured.
-    pub default: Option<(Limit, Limit)>,
-}
-
 /// System bits that command a chart as a whole: they initialise, clear or freeze it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct ChartBits {
@@ -77,6 +62,21 @@ pub struct ClearedBit {
     /// Whether the program must not reset it; else there is just no need to.
     pub is_forbidden: bool,
     pub source: &'static str,
+}
+
+/// What all charts of a program may have at most: in their drawing, and at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ChartCapacity {
+    /// Those of expansions too, but for `IN` and `OUT`.
+    pub steps: Limit,
+    pub transitions: Limit,
+    pub and_convergences: Option<Limit>,
+    /// Origin and destination.
+    pub connectors: Option<(Limit, Limit)>,
+    pub active_steps: Limit,
+    pub valid_transitions: Limit,
+    /// The last two as they are unless configured, of a known controller where they are configured.
+    pub default: Option<(Limit, Limit)>,
 }
 
 /// The controller that a program is for, as far as it is known, and what the application configures on it.
@@ -340,20 +340,20 @@ impl Target {
         }
     }
 
-    /// Values that the time of a step takes, and its unit in milliseconds.
-    pub const fn step_times(&self) -> Option<(Range, Limit)> {
-        match self.family {
-            Family::Pl7 => Some((pl7::STEP_TIMES, pl7::STEP_TIME_UNIT_MS)),
-            Family::Pl72 => Some((pl72::STEP_TIMES_S, pl72::STEP_TIME_UNIT_MS)),
-            Family::Step7 => None,
-        }
-    }
-
     /// The system bits that command a chart as a whole; `None` where there are no charts.
     pub const fn chart_bits(&self) -> Option<&'static ChartBits> {
         match self.family {
             Family::Pl7 => Some(&pl7::CHART_BITS),
             Family::Pl72 => Some(&pl72::CHART_BITS),
+            Family::Step7 => None,
+        }
+    }
+
+    /// Values that the time of a step takes, and its unit in milliseconds.
+    pub const fn step_times(&self) -> Option<(Range, Limit)> {
+        match self.family {
+            Family::Pl7 => Some((pl7::STEP_TIMES, pl7::STEP_TIME_UNIT_MS)),
+            Family::Pl72 => Some((pl72::STEP_TIMES_S, pl72::STEP_TIME_UNIT_MS)),
             Family::Step7 => None,
         }
     }
