@@ -14,7 +14,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                     Guarded::By(guard) => !net.space().asks_beyond_step_times(guard),
                     Guarded::Never | Guarded::Unknown => false,
                 };
-                if !is_asked || !net.is_ever_valid(&part.component, &part.all, it) {
+                if !is_asked || !net.is_ever_valid(&part.all, it) {
                     continue;
                 }
                 let can_be = |value| net.can_be(&part.component, &part.all, &[(it, value)]);

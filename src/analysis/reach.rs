@@ -142,6 +142,8 @@ pub type Situation = Box<[u64]>;
 #[derive(Debug, Default)]
 pub struct Reached {
     pub situations: Vec<Situation>,
+    /// By crossing: the situations in which it is valid.
+    valid_in: FxHashMap<usize, Vec<u32>>,
     /// Where each was reached from, by crossing what.
     from: Vec<Option<(u32, Vec<usize>)>>,
     /// Not all situations were looked at.
@@ -452,6 +454,7 @@ impl<'p, 'a> Net<'p, 'a> {
             let situation = reached.situations[next].clone();
             next += 1;
             let valid = walker.valid(&situation);
+            valid.iter().for_each(|it| reached.valid_in.entry(*it).or_default().push(at));
             let crossed = walker.crossings(&situation, &valid, &mut cache, &mut reached.is_partial);
             if valid.is_empty() || crossed.is_empty() && !reached.is_partial {
                 reached.dead.push(at);
@@ -521,7 +524,8 @@ impl<'p, 'a> Net<'p, 'a> {
         let asked = walker.asked(&crossings);
         let mut seen: FxHashSet<Vec<bool>> = FxHashSet::default();
         let mut answer = Answer::Never;
-        for situation in &reached.situations {
+        let valid_in = crossings.first().and_then(|it| reached.valid_in.get(it)).into_iter().flatten();
+        for situation in valid_in.map(|it| &reached.situations[*it as usize]) {
             if !crossings.iter().all(|&it| walker.is_valid(situation, it)) {
                 continue;
             }
@@ -541,9 +545,8 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     /// Whether a transition is valid in some situation.
-    pub fn is_ever_valid(&self, component: &Component, reached: &Reached, crossing: usize) -> bool {
-        let walker = Walker { net: self, component, apart: false };
-        reached.situations.iter().any(|it| walker.is_valid(it, crossing))
+    pub fn is_ever_valid(&self, reached: &Reached, crossing: usize) -> bool {
+        reached.valid_in.contains_key(&crossing)
     }
 
     /// Whether a receptivity says something of an object.
@@ -827,6 +830,11 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
     /// The same of receptivities that share objects.
     fn tied_sets(&self, group: &[usize], steps: &[(ExprId, bool)]) -> (Vec<Vec<usize>>, bool) {
         let space = self.net.space();
+        /// More than this are not looked at.
+        const MANY: usize = 48;
+        if group.len() > MANY {
+            return (vec![Vec::new()], true);
+        }
         let is_small = group.len() <= MAX_TOGETHER;
         let candidates: Vec<Vec<usize>> = if is_small {
             (0..1_usize << group.len())
