@@ -28,6 +28,9 @@ const MOST_OPENINGS: usize = 256;
 /// Of so many situations without an end, and lost activations, the cause is looked for.
 pub const MAX_CAUSES: usize = 32;
 
+/// Valid transitions are compared pair by pair: so many comparisons in all, hundreds of times what charts need.
+const MAX_COMPARISONS: usize = 20_000_000;
+
 /// Of more transitions than this that depend on one another, only single ones and pairs are crossed.
 const MAX_TOGETHER: usize = 5;
 
@@ -448,13 +451,18 @@ impl<'p, 'a> Net<'p, 'a> {
                 reached.from.push(None);
             }
         }
-        let mut next = 0;
+        let (mut next, mut comparisons) = (0, 0_usize);
         while next < reached.situations.len() {
             let at = as_index(next);
             let situation = reached.situations[next].clone();
             next += 1;
             let valid = walker.valid(&situation);
             valid.iter().for_each(|it| reached.valid_in.entry(*it).or_default().push(at));
+            comparisons = comparisons.saturating_add(valid.len().saturating_mul(valid.len()));
+            if comparisons > MAX_COMPARISONS {
+                reached.is_partial = true;
+                return reached;
+            }
             let crossed = walker.crossings(&situation, &valid, &mut cache, &mut reached.is_partial);
             if valid.is_empty() || crossed.is_empty() && !reached.is_partial {
                 reached.dead.push(at);

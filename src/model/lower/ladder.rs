@@ -571,7 +571,7 @@ impl Run {
 mod tests {
     use super::*;
     use crate::model::entity::Task;
-    use crate::model::lower::testing::show;
+    use crate::model::lower::testing;
 
     fn part(rungs: &str, part: Part) -> UnitModel {
         let parse = crate::syntax::pl7::parse_ld(rungs);
@@ -583,35 +583,8 @@ mod tests {
         part(&format!("RUNG\n{rows}\nEND_RUNG"), Part::Main)
     }
 
-    /// What each statement does, with the path to it.
     fn statements(rows: &str) -> Vec<String> {
-        let model = model(rows);
-        let name = |access: u32| model.object(model.accesses[access as usize].object).text.to_string();
-        let mut lines = Vec::new();
-        for it in &model.statements {
-            let what = match it.kind {
-                StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
-                    format!("{} := {}", name(access), show(&model, value))
-                }
-                StatementKind::Set { access, when } => format!("set {} when {}", name(access), show(&model, when)),
-                StatementKind::Reset { access, when } => format!("reset {} when {}", name(access), show(&model, when)),
-                StatementKind::Drive { access, pin, when, .. } => {
-                    format!("{} of {} when {}", pin.describe(), name(access), show(&model, when))
-                }
-                StatementKind::Call(call) => {
-                    let call = &model.calls[call as usize];
-                    format!("call {} when {}", call.text, show(&model, call.when))
-                }
-                StatementKind::Jump(jump) => format!("jump when {}", show(&model, model.jumps[jump as usize].when)),
-                StatementKind::Return { when, .. } => format!("return when {}", show(&model, when)),
-                StatementKind::Branch { condition } => format!("branch on {}", show(&model, condition)),
-                StatementKind::Halt => "halt".to_owned(),
-                _ => continue,
-            };
-            let path = show(&model, it.path);
-            lines.push(if path == "true" { what } else { format!("{path}: {what}") });
-        }
-        lines
+        testing::statements(&model(rows))
     }
 
     fn flaws(model: &UnitModel) -> Vec<Flaw> {

@@ -44,6 +44,37 @@ pub fn acts_on_edge(block: &str, input: Pin) -> bool {
 mod testing {
     use crate::model::UnitModel;
     use crate::model::expr::{Expr, ExprId};
+    use crate::model::unit::StatementKind;
+
+    /// What each statement does, with the path to it.
+    pub(super) fn statements(model: &UnitModel) -> Vec<String> {
+        let name = |access: u32| model.object(model.accesses[access as usize].object).text.to_string();
+        let mut lines = Vec::new();
+        for it in &model.statements {
+            let what = match it.kind {
+                StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
+                    format!("{} := {}", name(access), show(model, value))
+                }
+                StatementKind::Set { access, when } => format!("set {} when {}", name(access), show(model, when)),
+                StatementKind::Reset { access, when } => format!("reset {} when {}", name(access), show(model, when)),
+                StatementKind::Drive { access, pin, when, .. } => {
+                    format!("{} of {} when {}", pin.describe(), name(access), show(model, when))
+                }
+                StatementKind::Call(call) => {
+                    let call = &model.calls[call as usize];
+                    format!("call {} when {}", call.text, show(model, call.when))
+                }
+                StatementKind::Jump(jump) => format!("jump when {}", show(model, model.jumps[jump as usize].when)),
+                StatementKind::Return { when, .. } => format!("return when {}", show(model, when)),
+                StatementKind::Branch { condition } => format!("branch on {}", show(model, condition)),
+                StatementKind::Halt => "halt".to_owned(),
+                _ => continue,
+            };
+            let path = show(model, it.path);
+            lines.push(if path == "true" { what } else { format!("{path}: {what}") });
+        }
+        lines
+    }
 
     /// An expression, written out.
     pub(super) fn show(model: &UnitModel, id: ExprId) -> String {

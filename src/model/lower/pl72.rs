@@ -298,7 +298,7 @@ mod tests {
     use crate::model::UnitModel;
     use crate::model::chart::Receptivity;
     use crate::model::entity::{Entity, Part, Task};
-    use crate::model::lower::testing::show;
+    use crate::model::lower::testing::{self, show};
     use crate::model::unit::{Mode, OddityKind, StatementKind};
     use crate::syntax::{self, Language};
 
@@ -310,28 +310,8 @@ mod tests {
         super::super::lower(parse.syntax(), &text, entity, Language::Pl72Ld)
     }
 
-    /// What each statement does, with the path to it.
     fn statements(rows: &str) -> Vec<String> {
-        let model = model(rows);
-        let name = |access: u32| model.object(model.accesses[access as usize].object).text.to_string();
-        let mut lines = Vec::new();
-        for it in &model.statements {
-            let what = match it.kind {
-                StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
-                    format!("{} := {}", name(access), show(&model, value))
-                }
-                StatementKind::Set { access, when } => format!("set {} when {}", name(access), show(&model, when)),
-                StatementKind::Reset { access, when } => format!("reset {} when {}", name(access), show(&model, when)),
-                StatementKind::Drive { access, pin, when, .. } => {
-                    format!("{} of {} when {}", pin.describe(), name(access), show(&model, when))
-                }
-                StatementKind::Jump(jump) => format!("jump when {}", show(&model, model.jumps[jump as usize].when)),
-                _ => continue,
-            };
-            let path = show(&model, it.path);
-            lines.push(if path == "true" { what } else { format!("{path}: {what}") });
-        }
-        lines
+        testing::statements(&model(rows))
     }
 
     fn operation(operation: &str) -> Vec<String> {
