@@ -3,8 +3,10 @@
 //! Atoms are bits, edges, comparisons and opaque values; equal atoms (same object, same version) have equal values.
 //! The laws between atoms are respected: a rising edge implies the bit, a falling edge its absence, and the comparisons
 //! of one term with constants agree with some value of the term. Small conditions are decided by a truth table in
-//! machine words; beyond [`MAX_ATOMS`] the answer is "not decided".
+//! machine words, those beyond [`MAX_ATOMS`] by the solver of [`super::satisfy`], which also knows a program's objects.
 
+use super::satisfy::{Answer, Space};
+use crate::model::entity::Family;
 use crate::model::expr::{Comparison, Expr, ExprId, Exprs};
 
 /// Truth tables have at most 2^12 rows, 64 machine words.
@@ -55,12 +57,23 @@ pub fn together(exprs: &Exprs, conditions: &[ExprId]) -> Verdict {
     if are_free(exprs, &conjuncts) {
         return Verdict::Possible;
     }
-    let Some(table) = Table::new(exprs, &conjuncts) else { return Verdict::NotDecided };
+    let Some(table) = Table::new(exprs, &conjuncts) else { return by_solver(exprs, &conjuncts) };
     let mut rows = table.lawful();
     for &it in &conjuncts {
         and(&mut rows, table.value(it));
     }
     verdict(&rows)
+}
+
+/// The same of conditions too large for a table. What the objects are plays no part here, as it plays none in a table.
+fn by_solver(exprs: &Exprs, conjuncts: &[ExprId]) -> Verdict {
+    let space = Space { exprs, objects: &[], family: Family::Step7 };
+    let wanted: Vec<(ExprId, bool)> = conjuncts.iter().map(|&it| (it, true)).collect();
+    match space.solve(&wanted) {
+        Answer::Never => Verdict::Never,
+        Answer::Possible(_) => Verdict::Possible,
+        Answer::NotDecided => Verdict::NotDecided,
+    }
 }
 
 /// Whether conjuncts, none of which is another's complement, are bits, their absences, and comparisons of different
@@ -443,16 +456,26 @@ mod tests {
     }
 
     #[test]
-    fn large_conditions_are_not_decided() {
+    fn large_conditions_are_decided_by_the_solver() {
         let mut exprs = Exprs::default();
-        let mut any = bit(&mut exprs, 0);
-        for n in 1..40 {
-            let next = bit(&mut exprs, n);
-            any = exprs.or(any, next);
-        }
+        let some = |exprs: &mut Exprs, count: u32| {
+            (1..count).fold(bit(exprs, 0), |any, n| {
+                let next = bit(exprs, n);
+                exprs.or(any, next)
+            })
+        };
+        let any = some(&mut exprs, 40);
         let other = exprs.xor(any, Exprs::TRUE);
-        assert_eq!(together(&exprs, &[any]), Verdict::NotDecided);
+        assert_eq!(together(&exprs, &[any]), Verdict::Possible);
         assert_eq!(together(&exprs, &[any, other]), Verdict::Never, "by form");
+        let mut all = vec![any];
+        for n in 0..40 {
+            let absent = bit(&mut exprs, n);
+            all.push(exprs.not(absent));
+        }
+        assert_eq!(together(&exprs, &all), Verdict::Never, "by what they say");
+        let too_many = some(&mut exprs, 5000);
+        assert_eq!(together(&exprs, &[too_many]), Verdict::NotDecided);
     }
 
     #[test]
