@@ -665,13 +665,24 @@ impl Input {
     }
 }
 
-/// Checks files on the current rayon pool. The outcome is the same for any number of threads.
-pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
-    let start = Instant::now();
+/// The files of a run in a database.
+pub struct Opened {
+    pub db: RootDatabase,
+    /// In path order.
+    pub files: Vec<SourceFile>,
+    /// Of each file, the name of its encoding.
+    pub encodings: Vec<&'static str>,
+    /// Files that are left out.
+    pub unread: Vec<Unread>,
+    untargeted: Vec<Family>,
+}
+
+/// Reads the units of files on the current rayon pool.
+pub fn open(mut inputs: Vec<Input>, settings: Settings) -> Opened {
     inputs.sort_by(|a, b| a.path.cmp(&b.path));
     inputs.dedup_by(|a, b| a.path == b.path);
-    let mut outcome = Outcome { active: settings.active(), ..Outcome::default() };
     let (linted, left): (Vec<Input>, Vec<Input>) = inputs.into_iter().partition(|it| family(it.detected).is_some());
+    let mut unread = Vec::new();
     let mut partly_read: Vec<String> = Vec::new();
     for it in left {
         if matches!(it.detected, Detected::Unsupported { what, .. } if detect::unsupported::is_code(what)) {
@@ -681,10 +692,10 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),
             _ => UnreadReason::NotPlc,
         };
-        outcome.unread.push(Unread { path: it.path, reason });
+        unread.push(Unread { path: it.path, reason });
     }
-    outcome.untargeted = untargeted(&linted, &settings, &outcome.active);
-    let encodings: Vec<&'static str> = linted.iter().map(|it| it.source.encoding.as_str()).collect();
+    let untargeted = untargeted(&linted, &settings, &settings.active());
+    let encodings = linted.iter().map(|it| it.source.encoding.as_str()).collect();
     let mut db = RootDatabase::new(settings, None);
     partly_read.dedup();
     db.project().set_partly_read(&mut db).to(partly_read);
@@ -694,6 +705,15 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             facts(db, unit);
         }
     });
+    Opened { db, files, encodings, unread, untargeted }
+}
+
+/// Checks files on the current rayon pool. The outcome is the same for any number of threads.
+pub fn check(inputs: Vec<Input>, settings: Settings) -> Outcome {
+    let start = Instant::now();
+    let active = settings.active();
+    let Opened { db, files, encodings, unread, untargeted } = open(inputs, settings);
+    let mut outcome = Outcome { active, unread, untargeted, ..Outcome::default() };
     let found: Vec<Vec<FileFinding>> =
         files.par_iter().map_with(db.clone(), |db, &file| file_findings(db, file).to_vec()).collect();
     let mut indices: FxHashMap<SourceFile, u32> = FxHashMap::default();

@@ -120,7 +120,7 @@ fn wrong_arguments_are_wrong_usage() {
     usage(&["check", "--ignore", "all,no-such-rule"], "--ignore: no rule or group is called `no-such-rule`");
     usage(&["check", "--encoding", "ebcdic"], "--encoding: unknown encoding `ebcdic`");
     usage(&["check", "nowhere.awl"], "nowhere.awl: there is no such file or folder");
-    usage(&["check", "-", "a.awl"], "standard input (`-`) is checked alone");
+    usage(&["check", "-", "a.awl"], "standard input (`-`) is read alone");
     usage(&["check", "--stdin-filename", "a.awl"], "give `-` as the path");
     usage(&["check", "--config", "nowhere.toml"], "nowhere.toml: the configuration cannot be read");
     usage(&["tree", "nowhere.awl"], "nowhere.awl: the file cannot be read");
