@@ -5,6 +5,8 @@
 
 mod paint;
 
+use std::ops::Range;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -71,20 +73,26 @@ enum ItemKind {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Action {
-    qualifier: &'static str,
+    /// `P1`, `N`.
+    qualifier: String,
     text: String,
 }
 
-fn qualifier(kind: Option<ActionKind>) -> &'static str {
-    match kind {
-        Some(ActionKind::Activation) => "P1",
-        Some(ActionKind::Continuous) => "N1",
-        Some(ActionKind::Deactivation) => "P0",
-        Some(ActionKind::Stored) => "S",
-        Some(ActionKind::Reset) => "R",
-        Some(ActionKind::Timed) => "T",
-        None => "",
-    }
+/// When an action runs, as its text says: the first such word in parentheses. Without any, as long as its step is active.
+fn qualifier(node: SyntaxNode<'_>) -> String {
+    let tokens = node.tokens().skip_while(|it| it.kind() != SyntaxKind::LParen);
+    let mut words = tokens.take_while(|it| it.kind() != SyntaxKind::RParen).map(|it| it.text());
+    words.find(|it| ActionKind::of(it).is_some()).unwrap_or("N").to_uppercase()
+}
+
+/// The code of the actions of a unit.
+struct Codes<'t> {
+    /// Actions that steps name, by their names in lower case.
+    named: FxHashMap<String, ast::ChartAction<'t>>,
+    /// Places that the ladder of an action names, by where the action begins.
+    of_ladder: FxHashMap<rowan::TextSize, Range<u32>>,
+    /// What the rungs of the unit do.
+    rungs: Vec<(u32, String)>,
 }
 
 type Key<'a> = (Task, Option<&'a SmolStr>, Graph);
@@ -233,13 +241,13 @@ impl<'u, 't> Reader<'u, 't> {
             marks: Vec::new(),
             entries: Vec::new(),
         };
-        let mut actions = self.actions();
-        for ((at, step), (node, comment)) in (0_u32..).zip(&self.chart.steps).zip(&self.steps) {
+        let codes = self.codes();
+        for (step, (node, comment)) in self.chart.steps.iter().zip(&self.steps) {
             let name = match &step.name {
                 Some(StepName::Symbol(_)) | None => step.text.to_string(),
                 Some(name) => name.to_string(),
             };
-            let actions = actions.remove(&at).unwrap_or_default();
+            let actions = ast::ChartStep::cast(*node).map(|it| self.actions(it, &codes)).unwrap_or_default();
             places.push((node.text_range(), items.len()));
             items.push((item(ItemKind::Step { kind: step.kind, name, actions }, *comment), step.cell));
         }
@@ -310,53 +318,53 @@ impl<'u, 't> Reader<'u, 't> {
         }
     }
 
-    /// The actions of each step, in the order of the text.
-    fn actions(&self) -> FxHashMap<u32, Vec<Action>> {
-        let mut codes: FxHashMap<rowan::TextSize, ast::ChartAction<'t>> = FxHashMap::default();
-        for it in &self.actions {
-            let range = it.name().map_or(it.range(), |it| it.text_range());
-            codes.insert(range.start(), *it);
+    fn codes(&self) -> Codes<'t> {
+        let named = self.actions.iter().filter_map(|it| Some((it.name()?.text().to_lowercase(), *it)));
+        let of_ladder = self.chart.actions.iter().filter(|it| it.language == Some(CodeLanguage::Ladder));
+        Codes {
+            // Of two actions of one name the first counts.
+            named: named.collect::<Vec<_>>().into_iter().rev().collect(),
+            of_ladder: of_ladder.map(|it| (it.range.start(), it.anchors.clone())).collect(),
+            rungs: words::statements(self.unit.model),
         }
-        let rungs = words::statements(self.unit.model);
-        let mut sorted: Vec<&chart::Action> = self.chart.actions.iter().collect();
-        sorted.sort_by_key(|it| it.range.start());
-        let mut actions: FxHashMap<u32, Vec<Action>> = FxHashMap::default();
-        for it in sorted {
-            let text = match codes.get(&it.range.start()) {
-                Some(code) => {
-                    let text = match it.language {
-                        Some(CodeLanguage::Ladder) => {
-                            let from = rungs.partition_point(|rung| rung.0 < it.anchors.start);
-                            let own = rungs[from..].iter().take_while(|rung| rung.0 < it.anchors.end);
-                            own.map(|it| it.1.as_str()).collect::<Vec<_>>().join("\n")
-                        }
-                        _ => words::sentences(code.sentences()),
-                    };
-                    match code.name() {
-                        Some(name) if text.is_empty() => name.text().to_owned(),
-                        Some(name) => format!("{}\n{text}", name.text()),
-                        None => text,
-                    }
-                }
-                // A bit that a step names.
-                None => {
-                    let range = std::ops::Range::<usize>::from(it.range);
-                    self.unit.text.get(range).unwrap_or_default().to_owned()
-                }
+    }
+
+    /// The actions of a step, in the order of the text.
+    fn actions(&self, step: ast::ChartStep<'t>, codes: &Codes<'t>) -> Vec<Action> {
+        let mut actions = Vec::new();
+        for node in step.syntax().children() {
+            let (words, name, text) = if let Some(it) = ast::ChartAction::cast(node) {
+                (it.syntax(), None, self.code(it, codes))
+            } else if let Some(it) = ast::Association::cast(node) {
+                let Some(target) = it.target() else { continue };
+                let code = codes.named.get(target.text().to_lowercase().as_str());
+                (it.syntax(), Some(target.text()), code.map(|it| self.code(*it, codes)).unwrap_or_default())
+            } else {
+                continue;
             };
-            let action = Action { qualifier: qualifier(it.kind), text };
-            /// An action of more steps than this is shown beside the first ones.
-            const MOST: usize = 256;
-            for step in it.steps.iter().take(MOST) {
-                actions.entry(*step).or_default().push(action.clone());
-            }
+            let lines: Vec<&str> = name.into_iter().chain(Some(&*text).filter(|it| !it.is_empty())).collect();
+            actions.push(Action { qualifier: qualifier(words), text: lines.join("\n") });
         }
         actions
     }
 
+    fn code(&self, it: ast::ChartAction<'t>, codes: &Codes<'t>) -> String {
+        let range = it.name().map_or(it.range(), |it| it.text_range());
+        match codes.of_ladder.get(&range.start()) {
+            Some(anchors) => {
+                let from = codes.rungs.partition_point(|rung| rung.0 < anchors.start);
+                let own = codes.rungs[from..].iter().take_while(|rung| rung.0 < anchors.end);
+                own.map(|it| it.1.as_str()).collect::<Vec<_>>().join("\n")
+            }
+            None => words::sentences(it.sentences()),
+        }
+    }
+
     fn receptivity(&self, it: ast::Transition<'t>, value: Receptivity) -> Option<String> {
         let text = code_text(self.unit, it.sentences(), it.rungs(), value);
-        Some(text).filter(|it| !it.is_empty())
+        // A statement ends so, a condition does not.
+        let text = text.trim_end_matches(|it: char| it == ';' || it.is_whitespace());
+        Some(text.to_owned()).filter(|it| !it.is_empty())
     }
 
     /// Gives each element the findings that lie in it.
@@ -534,7 +542,12 @@ impl Picture {
                     Some(item) => {
                         item.marks.extend(marks);
                         if let ItemKind::Step { actions, .. } = &mut item.kind {
-                            actions.push(Action { qualifier: qualifier(Some(*kind)), text });
+                            let qualifier = match kind {
+                                ActionKind::Activation => "P1",
+                                ActionKind::Deactivation => "P0",
+                                _ => "N1",
+                            };
+                            actions.push(Action { qualifier: qualifier.to_owned(), text });
                         }
                     }
                     None => self.marks.extend(marks),

@@ -27,7 +27,7 @@ pub(super) fn assign(count: usize, arcs: &[(u32, u32)], starts: &[u32], floor: &
     for (at, &(from, _)) in (0..).zip(arcs) {
         after[from as usize].push(at);
     }
-    let (order, back) = walk(count, arcs, &after, starts);
+    let Walked { order, rank, back } = walk(count, arcs, &after, starts);
     let mut before: Vec<Vec<u32>> = vec![Vec::new(); count];
     for (&(from, to), _) in arcs.iter().zip(&back).filter(|it| !it.1) {
         before[to as usize].push(from);
@@ -40,7 +40,7 @@ pub(super) fn assign(count: usize, arcs: &[(u32, u32)], starts: &[u32], floor: &
     for nodes in parts {
         let first = nodes.iter().map(|&it| rows[it as usize]).min().unwrap_or(0);
         let last = nodes.iter().map(|&it| rows[it as usize]).max().unwrap_or(0);
-        let (columns, width) = columns(&nodes, &before, &rows);
+        let (columns, width) = columns(&nodes, &before, &rows, &rank);
         if column > 0 && column + width > BAND {
             (column, row) = (0, next_row);
         }
@@ -59,8 +59,16 @@ fn index(it: usize) -> u32 {
     u32::try_from(it).unwrap_or(u32::MAX)
 }
 
-/// Depth-first from the starts: nodes in an order in which every arc leads forward but those that close a cycle.
-fn walk(count: usize, arcs: &[(u32, u32)], after: &[Vec<u32>], starts: &[u32]) -> (Vec<u32>, Vec<bool>) {
+struct Walked {
+    /// Nodes in an order in which every arc leads forward but those that close a cycle.
+    order: Vec<u32>,
+    /// When each node was first met.
+    rank: Vec<u32>,
+    back: Vec<bool>,
+}
+
+/// Depth-first from the starts, then from what nothing leads to, then from what is left.
+fn walk(count: usize, arcs: &[(u32, u32)], after: &[Vec<u32>], starts: &[u32]) -> Walked {
     #[derive(Clone, Copy, PartialEq, Eq)]
     enum State {
         New,
@@ -72,43 +80,37 @@ fn walk(count: usize, arcs: &[(u32, u32)], after: &[Vec<u32>], starts: &[u32]) -
     let free = (0..index(count)).filter(|it| !entered[*it as usize]);
     let roots: Vec<u32> = starts.iter().copied().chain(free).chain(0..index(count)).collect();
     let mut state = vec![State::New; count];
-    let mut back = vec![false; arcs.len()];
-    let mut order = Vec::with_capacity(count);
-    // The last root is walked first, so that the reversed order begins with the first one.
-    let mut of_root: Vec<Vec<u32>> = Vec::new();
+    let mut walked = Walked { order: Vec::with_capacity(count), rank: vec![0; count], back: vec![false; arcs.len()] };
+    let mut met = 0;
     for root in roots {
         if state[root as usize] != State::New {
             continue;
         }
-        let mut done = Vec::new();
-        state[root as usize] = State::Open;
         let mut stack = vec![(root, 0)];
         while let Some((node, next)) = stack.last_mut() {
-            // Children are walked from the last, for the order is reversed.
-            let children = &after[*node as usize];
-            let Some(&arc) = children.len().checked_sub(*next + 1).and_then(|it| children.get(it)) else {
-                state[*node as usize] = State::Done;
-                done.push(*node);
+            let node = *node;
+            if state[node as usize] == State::New {
+                state[node as usize] = State::Open;
+                walked.rank[node as usize] = met;
+                met += 1;
+            }
+            let Some(&arc) = after[node as usize].get(*next) else {
+                state[node as usize] = State::Done;
+                walked.order.push(node);
                 stack.pop();
                 continue;
             };
             *next += 1;
             let to = arcs[arc as usize].1;
             match state[to as usize] {
-                State::New => {
-                    state[to as usize] = State::Open;
-                    stack.push((to, 0));
-                }
-                State::Open => back[arc as usize] = true,
+                State::New => stack.push((to, 0)),
+                State::Open => walked.back[arc as usize] = true,
                 State::Done => {}
             }
         }
-        done.reverse();
-        of_root.push(done);
     }
-    // A later root may lead to nodes of an earlier one, never the other way round.
-    of_root.into_iter().rev().for_each(|it| order.extend(it));
-    (order, back)
+    walked.order.reverse();
+    walked
 }
 
 /// The longest way to each node.
@@ -180,13 +182,16 @@ struct Block {
 }
 
 /// Columns of the nodes of one part, which are in topological order, and how many there are.
-fn columns(nodes: &[u32], before: &[Vec<u32>], rows: &[u32]) -> (Vec<usize>, usize) {
+fn columns(nodes: &[u32], before: &[Vec<u32>], rows: &[u32], rank: &[u32]) -> (Vec<usize>, usize) {
     // Positions in `nodes`, counted from 1: 0 is above all.
     let position: rustc_hash::FxHashMap<u32, usize> = nodes.iter().copied().zip(1..).collect();
     let preds: Vec<Vec<usize>> = std::iter::once(Vec::new())
         .chain(nodes.iter().map(|it| before[*it as usize].iter().filter_map(|it| position.get(it).copied()).collect()))
         .collect();
-    let (parent, children) = dominators(&preds);
+    let (parent, mut children) = dominators(&preds);
+    // Branches from left to right as they were met.
+    let rank_of = |it: usize| it.checked_sub(1).map(|it| rank[nodes[it] as usize]);
+    children.iter_mut().for_each(|it| it.sort_by_key(|it| rank_of(*it)));
     // Numbers in the order in which the tree is entered, with the last one below each node.
     let mut entered = vec![(0, 0); preds.len()];
     let mut count = 0;
@@ -280,7 +285,5 @@ fn dominators(preds: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
         depth[node] = depth[parent[node]] + 1;
         children[parent[node]].push(node);
     }
-    // The order of the nodes begins with what was walked last.
-    children[0].reverse();
     (parent, children)
 }

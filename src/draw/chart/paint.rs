@@ -229,7 +229,7 @@ fn paint(page: &Page, views: &[View<'_>], routed: &Routed, origin: Point, scene:
         let place = at(*place);
         match &view.item.kind {
             ItemKind::Step { kind, name, actions } => {
-                let qualifiers: Vec<&str> = actions.iter().map(|it| it.qualifier).collect();
+                let qualifiers: Vec<&str> = actions.iter().map(|it| it.qualifier.as_str()).collect();
                 paint_step(view, *kind, &shown_name(name), &qualifiers, place, &mut group);
             }
             ItemKind::Transition { name, receptivity } => {
