@@ -19,6 +19,7 @@ use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::ProgramIndex;
 use crate::analysis::symbols::{self, SymbolTable};
+use crate::draw::{self, Drawing, Mark};
 use crate::lint::settings::{ProgramScope, Settings};
 use crate::lint::suppress::{Code, Comment, Suppressions};
 use crate::lint::{
@@ -767,6 +768,64 @@ pub fn check(inputs: Vec<Input>, settings: Settings) -> Outcome {
     // Dropping all facts takes time, and the process is about to end.
     std::mem::forget(db);
     outcome
+}
+
+/// A drawing with the name of the program that it shows a part of.
+#[derive(Debug, Clone)]
+pub struct ProgramDrawing {
+    pub program: String,
+    pub drawing: Drawing,
+}
+
+impl Opened {
+    /// All drawings of the programs, in their order, with the findings in them if they are wanted.
+    pub fn drawings(&self, with_findings: bool) -> Vec<ProgramDrawing> {
+        let db = &self.db;
+        let mut marks: FxHashMap<Unit<'_>, Vec<(TextRange, Mark)>> = FxHashMap::default();
+        if with_findings {
+            self.files.par_iter().for_each_with(db.clone(), |db, &file| {
+                file_findings(db, file);
+            });
+            for &file in &self.files {
+                let layout = layout(db, file);
+                for it in file_findings(db, file).iter().filter(|it| it.suppressed.is_none()) {
+                    let it = &it.finding;
+                    let after = layout.partition_point(|unit| unit.1 <= u32::from(it.place.range.start()));
+                    let Some(&(unit, offset)) = after.checked_sub(1).and_then(|it| layout.get(it)) else { continue };
+                    let Some(range) = it.place.range.checked_sub(TextSize::new(offset)) else { continue };
+                    let mark = Mark { code: it.rule.code, severity: it.severity, message: it.message.clone() };
+                    marks.entry(unit).or_default().push((range, mark));
+                }
+            }
+        }
+        programs(db).iter().flat_map(|&program| program_drawings(db, program, &marks)).collect()
+    }
+}
+
+fn program_drawings<'db>(
+    db: &'db RootDatabase,
+    program: Program<'db>,
+    marks: &FxHashMap<Unit<'db>, Vec<(TextRange, Mark)>>,
+) -> Vec<ProgramDrawing> {
+    let units = program_units(db, program);
+    let facts: Vec<&UnitFacts> = units.iter().map(|&unit| &**facts(db, unit)).collect();
+    let facts = symbols::resolve(symbol_table(db, program), &facts);
+    let index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
+    let trees: Vec<Parse> = units.iter().map(|&unit| parse(db, unit)).collect();
+    let lower = |(&unit, tree): (&Unit<'db>, &Parse)| {
+        lower::lower(tree.syntax(), unit.text(db), unit.entity(db).clone(), unit.language(db))
+    };
+    let models: Vec<UnitModel> = units.iter().zip(&trees).map(lower).collect();
+    let views = units.iter().zip(&trees).zip(&models).map(|((&unit, tree), model)| draw::Unit {
+        text: unit.text(db),
+        language: unit.language(db),
+        tree: tree.syntax(),
+        model,
+        marks: marks.get(&unit).map_or(&[], Vec::as_slice),
+    });
+    let name = Path::new(program.key(db)).file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
+    let drawings = draw::drawings(&name, &views.collect::<Vec<_>>(), &index);
+    drawings.into_iter().map(|drawing| ProgramDrawing { program: name.clone(), drawing }).collect()
 }
 
 /// Families of files for which no controller is configured, though an active rule asks for one.

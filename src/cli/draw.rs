@@ -4,20 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use rayon::prelude::*;
-use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::config::{Loader, Source};
 use super::{Exit, Failure, complain, dialect, print, read};
-use crate::analysis::facts::UnitFacts;
-use crate::analysis::program::ProgramIndex;
-use crate::analysis::symbols;
-use crate::db::{self, Opened, RootDatabase};
-use crate::draw::{self, Drawing, Kind, Mark};
+use crate::db::{self, ProgramDrawing};
+use crate::draw::{self, Drawing, Kind};
 use crate::lint::settings::Overrides;
 use crate::lint::{Unread, UnreadReason};
-use crate::model::lower;
 use crate::source::detect::Dialect;
 
 #[derive(Debug, clap::Args)]
@@ -116,12 +110,6 @@ enum Theme {
     Dark,
 }
 
-/// A drawing with the program that it shows a part of.
-struct Drawn {
-    program: String,
-    drawing: Drawing,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let source = match (&arguments.config, arguments.isolated) {
         (Some(file), _) => Source::File(file.clone()),
@@ -141,7 +129,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let files = group.read(arguments.dialect);
         unread.extend(files.unread);
         let opened = db::open(files.inputs, group.settings);
-        drawings.extend(draw(&opened, arguments.no_findings));
+        drawings.extend(opened.drawings(!arguments.no_findings));
         unread.extend(opened.unread);
     }
     let shown = arguments.path.display();
@@ -163,67 +151,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// All drawings of the programs in a database.
-fn draw(opened: &Opened, no_findings: bool) -> Vec<Drawn> {
-    let db = &opened.db;
-    let mut marks: FxHashMap<db::Unit<'_>, Vec<(TextRange, Mark)>> = FxHashMap::default();
-    if !no_findings {
-        opened.files.par_iter().for_each_with(db.clone(), |db, &file| {
-            db::file_findings(db, file);
-        });
-        for &file in &opened.files {
-            let layout = db::layout(db, file);
-            for it in db::file_findings(db, file).iter().filter(|it| it.suppressed.is_none()) {
-                let it = &it.finding;
-                let after = layout.partition_point(|unit| unit.1 <= u32::from(it.place.range.start()));
-                let Some(&(unit, offset)) = after.checked_sub(1).and_then(|it| layout.get(it)) else { continue };
-                let Some(range) = it.place.range.checked_sub(TextSize::new(offset)) else { continue };
-                let mark = Mark { code: it.rule.code, severity: it.severity, message: it.message.clone() };
-                marks.entry(unit).or_default().push((range, mark));
-            }
-        }
-    }
-    let mut drawn = Vec::new();
-    for &program in db::programs(db) {
-        drawn.extend(draw_program(db, program, &marks));
-    }
-    drawn
-}
-
-fn draw_program<'db>(
-    db: &'db RootDatabase,
-    program: db::Program<'db>,
-    marks: &FxHashMap<db::Unit<'db>, Vec<(TextRange, Mark)>>,
-) -> Vec<Drawn> {
-    let units = db::program_units(db, program);
-    let facts: Vec<&UnitFacts> = units.iter().map(|&unit| &**db::facts(db, unit)).collect();
-    let facts = symbols::resolve(db::symbol_table(db, program), &facts);
-    let index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
-    let models: Vec<_> = units
-        .iter()
-        .map(|&unit| {
-            let tree = db::tree(db, unit).syntax();
-            lower::lower(tree, unit.text(db), unit.entity(db).clone(), unit.language(db))
-        })
-        .collect();
-    let views: Vec<draw::Unit<'_>> = units
-        .iter()
-        .zip(&models)
-        .map(|(&unit, model)| draw::Unit {
-            text: unit.text(db),
-            language: unit.language(db),
-            tree: db::tree(db, unit).syntax(),
-            model,
-            marks: marks.get(&unit).map_or(&[], Vec::as_slice),
-        })
-        .collect();
-    let name = Path::new(program.key(db)).file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
-    let drawings = draw::drawings(&name, &views, &index);
-    drawings.into_iter().map(|drawing| Drawn { program: name.clone(), drawing }).collect()
-}
-
 /// Those that were asked for, in a form that they have.
-fn choose(mut drawings: Vec<Drawn>, arguments: &Arguments) -> Result<Vec<Drawn>, Failure> {
+fn choose(mut drawings: Vec<ProgramDrawing>, arguments: &Arguments) -> Result<Vec<ProgramDrawing>, Failure> {
     let shown = arguments.path.display();
     if !arguments.only.is_empty() {
         drawings.retain(|it| arguments.only.contains(&Only::of(it.drawing.kind())));
@@ -255,7 +184,9 @@ fn choose(mut drawings: Vec<Drawn>, arguments: &Arguments) -> Result<Vec<Drawn>,
         drawings.retain(|it| it.drawing.kind() != Kind::Ladder);
         let form = arguments.format.to_possible_value().map(|it| it.get_name().to_owned()).unwrap_or_default();
         if drawings.is_empty() {
-            return Err(Failure::Usage(format!("{shown}: rungs are no graph: {form} cannot show them, use --format svg")));
+            return Err(Failure::Usage(format!(
+                "{shown}: rungs are no graph: {form} cannot show them, use --format svg"
+            )));
         }
         if drawings.len() < before {
             complain(&format!("{} drawings of rungs are left out: {form} cannot show them", before - drawings.len()));
@@ -288,7 +219,7 @@ fn render(it: &Drawing, arguments: &Arguments) -> String {
     }
 }
 
-fn write(drawings: &[Drawn], arguments: &Arguments) -> Result<(), Failure> {
+fn write(drawings: &[ProgramDrawing], arguments: &Arguments) -> Result<(), Failure> {
     let extension = arguments.format.extension();
     let several = || {
         let titles: Vec<String> = drawings.iter().map(|it| it.drawing.title().to_owned()).collect();
@@ -334,7 +265,7 @@ fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// Names that all file systems take, one for each drawing: what it is, the program where there are several, the title.
-fn file_names(drawings: &[Drawn]) -> Vec<String> {
+fn file_names(drawings: &[ProgramDrawing]) -> Vec<String> {
     let is_one = drawings.windows(2).all(|it| it[0].program == it[1].program);
     let mut taken = FxHashSet::default();
     let mut next: FxHashMap<String, u32> = FxHashMap::default();

@@ -509,7 +509,8 @@ impl Page {
 
     fn layers(&self) -> layers::Layers {
         let starts = |wanted: StepKind| {
-            let is_wanted = move |it: &&(u32, &Item)| matches!(&it.1.kind, ItemKind::Step { kind, .. } if *kind == wanted);
+            let is_wanted =
+                move |it: &&(u32, &Item)| matches!(&it.1.kind, ItemKind::Step { kind, .. } if *kind == wanted);
             (0..).zip(&self.items).collect::<Vec<_>>().iter().filter(is_wanted).map(|it| it.0).collect::<Vec<u32>>()
         };
         let mut roots = starts(StepKind::Initial);
@@ -648,7 +649,8 @@ impl Picture {
                     if let Some(node) = nodes.get(it as usize).copied().flatten() {
                         return Some(node);
                     }
-                    let (ItemKind::Origin(name, _) | ItemKind::Destination(name, _)) = &page.items.get(it as usize)?.kind
+                    let (ItemKind::Origin(name, _) | ItemKind::Destination(name, _)) =
+                        &page.items.get(it as usize)?.kind
                     else {
                         return None;
                     };

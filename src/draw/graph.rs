@@ -79,35 +79,27 @@ impl Graph {
         writeln!(out, "  node [fontname=\"monospace\", fontsize=11, shape=box];")?;
         writeln!(out, "  edge [fontname=\"monospace\", fontsize=9];")?;
         for (at, node) in self.nodes.iter().enumerate() {
-            let (first, rest) = node.label.split_first().map_or(("", &[][..]), |it| (it.0.as_str(), it.1));
-            let label = quoted_lines(node.label.iter().map(String::as_str), "\\n");
-            let mut attributes = match node.look {
-                Look::Step | Look::Code => format!("label={label}"),
-                Look::InitialStep | Look::Entry => format!("label={label}, peripheries=2"),
-                Look::MacroStep => format!("label={label}, shape=Msquare"),
-                Look::Connector => format!("label={label}, shape=plaintext"),
-                Look::Absent => format!("label={label}, style=dashed"),
-                // A bar, with the receptivity beside it.
-                Look::Transition => {
-                    let lines = std::iter::once(first).chain(rest.iter().map(String::as_str));
-                    let label = quoted_lines(lines, "\\l");
-                    format!("label=\"\", xlabel={label}, style=filled, fillcolor=black, height=0.05, width=0.6, fixedsize=true")
-                }
-            };
+            let codes = codes(&node.marks);
+            let lines = node.label.iter().map(String::as_str).chain(Some(&*codes).filter(|it| !it.is_empty()));
+            let mut attributes = format!("label={}", quoted_lines(lines, "\\n"));
+            attributes.push_str(match node.look {
+                Look::Step | Look::Code => "",
+                Look::InitialStep | Look::Entry => ", peripheries=2",
+                Look::MacroStep => ", shape=Msquare",
+                Look::Connector => ", shape=plaintext",
+                // The bar of the transition.
+                Look::Transition => ", shape=underline",
+                Look::Absent => ", style=dashed",
+            });
             if let Some(severity) = node.marks.iter().map(|it| it.severity).max() {
                 let (_, colour, soft) = look(severity);
-                write!(attributes, ", color=\"{colour}\"")?;
                 match node.look {
-                    Look::Transition => write!(attributes, ", fillcolor=\"{colour}\", fontcolor=\"{colour}\"")?,
-                    _ => write!(attributes, ", style=filled, fillcolor=\"{soft}\"")?,
+                    Look::Transition => write!(attributes, ", color=\"{colour}\", fontcolor=\"{colour}\"")?,
+                    _ => write!(attributes, ", color=\"{colour}\", style=filled, fillcolor=\"{soft}\"")?,
                 }
                 let messages = node.marks.iter().map(|it| format!("{}: {}", it.code, it.message));
                 let messages: Vec<String> = messages.collect();
-                let tooltip = quoted_lines(messages.iter().map(String::as_str), "\\n");
-                write!(attributes, ", tooltip={tooltip}")?;
-                if node.look != Look::Transition {
-                    write!(attributes, ", xlabel={}", quoted(&codes(&node.marks)))?;
-                }
+                write!(attributes, ", tooltip={}", quoted_lines(messages.iter().map(String::as_str), "\\n"))?;
             }
             writeln!(out, "  n{at} [{attributes}];")?;
         }
@@ -172,13 +164,10 @@ fn quoted(text: &str) -> String {
     quoted_lines(std::iter::once(text), "")
 }
 
-/// Lines, each followed by an escape that ends it; the one between lines where it only parts them.
-fn quoted_lines<'a>(lines: impl Iterator<Item = &'a str>, end: &str) -> String {
+/// Lines with an escape between them.
+fn quoted_lines<'a>(lines: impl Iterator<Item = &'a str>, between: &str) -> String {
     let lines: Vec<String> = lines.map(|it| clean(it).replace('\\', "\\\\").replace('"', "\\\"")).collect();
-    match end {
-        "\\l" => format!("\"{}\"", lines.iter().map(|it| format!("{it}\\l")).collect::<String>()),
-        _ => format!("\"{}\"", lines.join(end)),
-    }
+    format!("\"{}\"", lines.join(between))
 }
 
 /// A quoted scalar of YAML.

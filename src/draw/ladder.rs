@@ -146,7 +146,10 @@ fn cell(it: &Placed<'_>, grid: &Grid<'_>, index: &ProgramIndex<'_>) -> Cell {
                 (None, None) => {
                     let is_wired = |row: usize| {
                         it.inputs.get(row).is_some_and(|it| grid.is_fed(*it) || grid.input_actual(*it).is_some())
-                            || it.outputs.get(row).is_some_and(|it| grid.is_used(*it) || grid.output_actual(*it).is_some())
+                            || it
+                                .outputs
+                                .get(row)
+                                .is_some_and(|it| grid.is_used(*it) || grid.output_actual(*it).is_some())
                     };
                     rows = (0..it.inputs.len()).rev().find(|it| is_wired(*it)).map_or(1, |it| it + 1);
                 }
@@ -173,9 +176,8 @@ fn cell(it: &Placed<'_>, grid: &Grid<'_>, index: &ProgramIndex<'_>) -> Cell {
 fn dfb_pins(interface: &Interface, rows: usize) -> [Vec<String>; 2] {
     [Slot::Left, Slot::Right].map(|side| {
         let rows = 0..u32::try_from(rows).unwrap_or(0);
-        let mut names: Vec<String> = rows
-            .map(|row| interface.parameter(side(row)).map_or_else(String::new, |it| it.name.to_string()))
-            .collect();
+        let mut names: Vec<String> =
+            rows.map(|row| interface.parameter(side(row)).map_or_else(String::new, |it| it.name.to_string())).collect();
         names.truncate(names.iter().rposition(|it| !it.is_empty()).map_or(0, |it| it + 1));
         names
     })
@@ -256,6 +258,10 @@ impl Cell {
 
     fn is_box(&self) -> bool {
         matches!(self.element, Some(Element::Compare | Element::Operate) | None)
+    }
+
+    fn is_plain_link(&self) -> bool {
+        matches!(self.element, Some(Element::HLink | Element::ShortCircuit)) && self.marks.is_empty()
     }
 
     fn tags(&self) -> Tags {
@@ -363,10 +369,26 @@ impl Rung {
             let x = places.x(column);
             head.line(Stroke::Link, [Point::new(x, places.wire(row)), Point::new(x, places.wire(row + 1))]);
         }
-        scene.groups.push(head);
-        for it in &self.cells {
-            scene.groups.push(it.paint(places));
+        // Links in a row are one line.
+        let mut run: Option<(u32, u32, u32)> = None;
+        let mut draw = |it: Option<(u32, u32, u32)>| {
+            if let Some((row, from, to)) = it {
+                let y = places.wire(row);
+                head.line(Stroke::Link, [Point::new(places.x(from), y), Point::new(places.x(to), y)]);
+            }
+        };
+        for it in self.cells.iter().filter(|it| it.is_plain_link()) {
+            run = match run {
+                Some((row, from, to)) if row == it.row && to == it.column => Some((row, from, to + it.width)),
+                before => {
+                    draw(before);
+                    Some((it.row, it.column, it.column + it.width))
+                }
+            };
         }
+        draw(run);
+        scene.groups.push(head);
+        scene.groups.extend(self.cells.iter().filter(|it| !it.is_plain_link()).map(|it| it.paint(places)));
         y + 22
     }
 
@@ -415,11 +437,8 @@ impl Cell {
         let wire = |group: &mut Group, from: i32, to: i32| {
             group.line(Stroke::Link, [Point::new(from, y), Point::new(to, y)]);
         };
-        let is_link = matches!(self.element, Some(Element::HLink | Element::ShortCircuit));
-        if !is_link || !self.marks.is_empty() {
-            let subject = format!("{} {}", name(self.element), clean(&self.text));
-            group.mark(subject.trim_end().to_owned(), &self.marks.iter().collect::<Vec<_>>());
-        }
+        let subject = format!("{} {}", name(self.element), clean(&self.text));
+        group.mark(subject.trim_end().to_owned(), &self.marks.iter().collect::<Vec<_>>());
         let operand = |group: &mut Group| {
             group.text(Style::Code, Anchor::Middle, middle.moved(0, -15), cut(&clean(&self.text), OPERAND));
         };
@@ -532,4 +551,3 @@ impl Cell {
         }
     }
 }
-

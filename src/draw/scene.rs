@@ -122,14 +122,31 @@ pub(super) enum Anchor {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Shape {
-    Line { points: Vec<Point>, stroke: Stroke },
-    Box { area: Rect, fill: Fill },
+    Line {
+        points: Vec<Point>,
+        stroke: Stroke,
+    },
+    Box {
+        area: Rect,
+        fill: Fill,
+    },
     /// `at` is on the base line.
-    Text { at: Point, anchor: Anchor, style: Style, text: String },
+    Text {
+        at: Point,
+        anchor: Anchor,
+        style: Style,
+        text: String,
+    },
     /// Part of a circle, clockwise.
-    Arc { from: Point, to: Point, radius: i32 },
+    Arc {
+        from: Point,
+        to: Point,
+        radius: i32,
+    },
     /// The head of an arrow, by its corners.
-    Head { points: [Point; 3] },
+    Head {
+        points: [Point; 3],
+    },
 }
 
 /// Shapes that belong together: a step with its actions, a cell of a rung.
@@ -183,7 +200,8 @@ impl Group {
         const HALF: i32 = 4;
         let (x, y) = ((to.x - from.x).signum(), (to.y - from.y).signum());
         let back = to.moved(-x * LENGTH, -y * LENGTH);
-        self.shapes.push(Shape::Head { points: [to, back.moved(y * HALF, x * HALF), back.moved(-y * HALF, -x * HALF)] });
+        self.shapes
+            .push(Shape::Head { points: [to, back.moved(y * HALF, x * HALF), back.moved(-y * HALF, -x * HALF)] });
     }
 
     /// Codes of findings in a column of tags, centred on a height; `x` is their left, or right, edge.

@@ -28,7 +28,7 @@ pub(super) fn code(node: SyntaxNode<'_>) -> String {
         match token.kind() {
             SyntaxKind::Newline => is_start = true,
             // What begins a sentence says nothing here.
-            SyntaxKind::SentenceStart | SyntaxKind::SentenceEnd => has_blank = true,
+            SyntaxKind::SentenceStart | SyntaxKind::SentenceEnd | SyntaxKind::Bang => has_blank = true,
             kind if kind.is_trivia() => has_blank = true,
             _ => {
                 if is_start && !out.is_empty() {
