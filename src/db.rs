@@ -823,7 +823,11 @@ fn program_drawings<'db>(
         model,
         marks: marks.get(&unit).map_or(&[], Vec::as_slice),
     });
-    let name = Path::new(program.key(db)).file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = match program.files(db) {
+        [only] => only.path(db),
+        _ => program.key(db),
+    };
+    let name = Path::new(name).file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
     let drawings = draw::drawings(&name, &views.collect::<Vec<_>>(), &index);
     drawings.into_iter().map(|drawing| ProgramDrawing { program: name.clone(), drawing }).collect()
 }

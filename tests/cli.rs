@@ -263,3 +263,92 @@ fn the_syntax_tree_holds_the_whole_text() {
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     assert!(ran.out.starts_with("FC1 @0..59: Awl("), "{}", ran.out);
 }
+
+const CHART: &str = "GR7 : MAST - Cycle - CHART - PAGE 0\nINITIAL_STEP 0 AT (C 0,L 1) : END_STEP\n\
+                     TRANSITION (LD) AT (C 0,L 2) :\nRUNG\nOPEN_CONTACT(%I1.0),H_LINK(9),HASH_COIL;\nEND_RUNG\nEND_TRANSITION\n\
+                     DEST_CONNECTOR 0 AT (C 0,L 3)\n";
+const MACRO: &str = "GR7 : MAST - Cycle - MACRO1 - PAGE 0\nIN_STEP AT (C 0,L 1) : END_STEP\n\
+                     TRANSITION (ST) AT (C 0,L 2) : (*PHRASE*) %M1 (*END_PHRASE*) END_TRANSITION\nOUT_STEP AT (C 0,L 3) : END_STEP\n";
+
+#[test]
+fn one_drawing_goes_to_standard_output_or_into_a_file() {
+    let chart = CHART.replace(
+        "(LD) AT (C 0,L 2) :\nRUNG\nOPEN_CONTACT(%I1.0),H_LINK(9),HASH_COIL;\nEND_RUNG",
+        "(ST) AT (C 0,L 2) :\n(*PHRASE*) %I1.0 (*END_PHRASE*)",
+    );
+    let folder = folder(&[("a.txt", &chart)]);
+    let ran = run(folder.path(), &["draw", "a.txt"]);
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""), "findings do not matter");
+    assert!(ran.out.starts_with("<?xml") && ran.out.ends_with("</svg>\n"), "{}", ran.out);
+    assert!(ran.out.contains("prefers-color-scheme"));
+    let dark = run(folder.path(), &["draw", "a.txt", "--theme", "dark", "-o", "sub.svg"]);
+    assert_eq!((dark.code, dark.out.as_str()), (Some(0), ""), "{}", dark.err);
+    let dark = fs::read_to_string(folder.path().join("sub.svg")).expect("the file is there");
+    assert!(!dark.contains("prefers-color-scheme") && dark != ran.out);
+    let mut child = command(folder.path());
+    child.args(["draw", "-", "--stdin-filename", "a.txt", "--format", "dot"]);
+    let mut child = child.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the program starts");
+    child.stdin.take().expect("standard input").write_all(chart.as_bytes()).expect("it reads");
+    let ran: Ran = child.wait_with_output().expect("it ends").into();
+    assert!(ran.code == Some(0) && ran.out.starts_with("digraph "), "{}", ran.out);
+    let ran = run(folder.path(), &["draw", "a.txt", "--format", "mermaid"]);
+    assert!(ran.out.contains("\nflowchart TB\n"), "{}", ran.out);
+}
+
+#[test]
+fn several_drawings_go_into_a_folder() {
+    let folder = folder(&[("a.txt", &format!("{CHART}{MACRO}"))]);
+    assert_usage(
+        &run(folder.path(), &["draw", "."]),
+        "there are 3 drawings: `MAST - Cycle - CHART`, `MAST - Cycle - MACRO1`",
+    );
+    assert_usage(&run(folder.path(), &["draw", ".", "-o", "a.svg"]), "they do not go into a.svg");
+    let ran = run(folder.path(), &["draw", ".", "-o", "out/pictures"]);
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+    let names: Vec<&str> = ran.out.lines().filter_map(|it| it.split(": ").next()).collect();
+    let names: Vec<String> = names.iter().map(|it| it.replace('\\', "/")).collect();
+    let file = |name: &str| format!("out/pictures/{name}.svg");
+    let expected = ["chart-MAST-Cycle-CHART", "chart-MAST-Cycle-MACRO1", "ladder-MAST-Cycle-CHART-PAGE-0"].map(file);
+    assert_eq!(names, expected);
+    assert!(expected.iter().all(|it| folder.path().join(it).is_file()));
+    let again = run(folder.path(), &["draw", ".", "--only", "charts", "--unit", "macro1"]);
+    assert_eq!(again.out, fs::read_to_string(folder.path().join(&expected[1])).expect("the file is there"));
+    let ran = run(folder.path(), &["draw", "a.txt", "--format", "dot", "-o", "dots/"]);
+    assert_eq!(ran.out.lines().count(), 2, "{}", ran.out);
+    assert!(ran.err.contains("1 drawings of rungs are left out: dot cannot show them"), "{}", ran.err);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_wrong_usage() {
+    let folder = folder(&[("a.txt", CHART), ("b/b.txt", "ST : MAST - SR1\n! %M1 := %M2;\n"), ("c/c.md", "Nothing.\n")]);
+    let usage = |arguments: &[&str], what: &str| assert_usage(&run(folder.path(), arguments), what);
+    usage(&["draw"], "required arguments were not provided");
+    usage(&["draw", "nowhere"], "nowhere: there is no such file or folder");
+    usage(&["draw", "b"], "b: nothing to draw: there is no chart, no rung and no call in it");
+    usage(&["draw", "c"], "c: nothing to draw: no PLC program is recognised in it");
+    usage(&["draw", "a.txt", "--only", "calls"], "a.txt: nothing to draw: there is no call in it");
+    usage(&["draw", "a.txt", "--unit", "SR7"], "no drawing has `SR7` in its title; there are: `MAST - Cycle - CHART`");
+    usage(&["draw", "a.txt", "--only", "ladder", "--format", "dot"], "dot cannot show them, use --format svg");
+    usage(&["draw", "a.txt", "--format", "png"], "invalid value 'png'");
+    usage(&["draw", "a.txt", "--only", "charts", "-o", "no/such/a.svg"], "the drawing cannot be written");
+    let help = run(folder.path(), &["draw", "--help"]);
+    assert!(help.out.contains("Exit codes: 0 drawn, 2 nothing to draw"), "{}", help.out);
+}
+
+/// The pictures of the documentation are what the commands that it names draw.
+#[test]
+fn pictures_of_the_documentation_are_current() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/drawings.md")).expect("the page");
+    let commands: Vec<&str> = text.lines().filter_map(|it| it.trim().strip_prefix("plclint ")).collect();
+    let mut count = 0;
+    for line in commands.iter().filter(|it| it.contains("-o docs/")) {
+        let (arguments, file) = line.split_once(" -o ").expect("a file");
+        let ran = run(root, &arguments.split(' ').collect::<Vec<_>>());
+        let picture = fs::read_to_string(root.join(file)).expect("the picture").replace("\r\n", "\n");
+        assert_eq!(ran.code, Some(0), "{line}: {}", ran.err);
+        assert!(ran.out == picture, "run `plclint {line}` again");
+        count += 1;
+    }
+    assert_eq!(count, 3);
+}

@@ -125,10 +125,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let path = std::slice::from_ref(&arguments.path);
     let mut drawings = Vec::new();
     let mut unread = Vec::new();
+    let mut is_read = false;
     for group in read::groups(path, arguments.stdin_filename.as_deref(), &mut loader)? {
         let files = group.read(arguments.dialect);
         unread.extend(files.unread);
         let opened = db::open(files.inputs, group.settings);
+        is_read |= !opened.files.is_empty();
         drawings.extend(opened.drawings(!arguments.no_findings));
         unread.extend(opened.unread);
     }
@@ -143,7 +145,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             UnreadReason::Unsupported(what) => Some(format!("{what} is not supported")),
             _ => None,
         });
-        let why = why.unwrap_or_else(|| "there is no chart, no rung and no call in it".to_owned());
+        let why = why.unwrap_or_else(|| match is_read {
+            true => "there is no chart, no rung and no call in it".to_owned(),
+            false => "no PLC program is recognised in it".to_owned(),
+        });
         return Err(Failure::Usage(format!("{shown}: nothing to draw: {why}")));
     }
     let drawings = choose(drawings, arguments)?;

@@ -444,7 +444,10 @@ impl Cell {
         };
         match self.element {
             Some(Element::Open | Element::Closed | Element::Rising | Element::Falling) => {
-                let (height, half) = CONTACT;
+                let (height, mut half) = CONTACT;
+                if matches!(self.element, Some(Element::Rising | Element::Falling)) {
+                    half += 3;
+                }
                 wire(&mut group, left, middle.x - half);
                 wire(&mut group, middle.x + half, right);
                 for x in [-half, half] {
@@ -454,8 +457,8 @@ impl Cell {
                     Some(Element::Closed) => {
                         group.line(Stroke::Link, [middle.moved(-half - 3, height), middle.moved(half + 3, -height)]);
                     }
-                    Some(Element::Rising) => group.centred(Style::Small, middle, "P"),
-                    Some(Element::Falling) => group.centred(Style::Small, middle, "N"),
+                    Some(Element::Rising) => group.centred(Style::Code, middle, "P"),
+                    Some(Element::Falling) => group.centred(Style::Code, middle, "N"),
                     _ => {}
                 }
                 operand(&mut group);
@@ -510,7 +513,7 @@ impl Cell {
                 wire(&mut group, left, area.x);
                 wire(&mut group, area.right(), right);
                 group.area(if self.element.is_some() { Fill::Paper } else { Fill::Dashed }, area);
-                group.lines(Style::Code, Anchor::Start, area.x + 5, area.y + 3, &lines);
+                group.lines(Style::Code, Anchor::Start, area.x + 5, area.y + 4, &lines);
             }
             Some(Element::Block) => self.paint_block(places, &mut group),
             Some(Element::Actual) => {
@@ -535,7 +538,7 @@ impl Cell {
         let area = Rect { height: bottom - area.y, ..area };
         group.area(Fill::Paper, area);
         let name = cut(&clean(&self.text), OPERAND);
-        group.text(Style::Name, Anchor::Middle, Point::new((left + right) / 2, area.y + 13), name);
+        group.text(Style::Name, Anchor::Middle, Point::new((left + right) / 2, area.y + 15), name);
         for row in 0..self.rows {
             let y = places.wire(self.row + row);
             let pin = |side: usize| self.pins[side].get(row as usize).map(|it| cut(&clean(it), 14));

@@ -213,14 +213,14 @@ fn columns(nodes: &[u32], before: &[Vec<u32>], rows: &[u32], rank: &[u32]) -> (V
         let (mut width, mut last) = (0, row_of(node));
         // Last row that is taken in each column.
         let mut taken: Vec<Option<u32>> = Vec::new();
-        let is_simple = children[node].len() < 2;
         let (branches, mut joins): (Vec<usize>, Vec<usize>) =
             children[node].iter().partition(|it| preds[**it].len() < 2);
+        let has_joins = !joins.is_empty();
         for &it in &branches {
             blocks[it].offset = width;
             width += blocks[it].width;
             last = last.max(blocks[it].last);
-            if !is_simple {
+            if has_joins {
                 taken.resize(width, Some(blocks[it].last));
             }
         }
@@ -234,17 +234,15 @@ fn columns(nodes: &[u32], before: &[Vec<u32>], rows: &[u32], rank: &[u32]) -> (V
             });
             let mut at = from.min().unwrap_or(0);
             let size = blocks[it].width;
-            let is_free = |column: usize| taken.get(column).copied().flatten().is_none_or(|it2| it2 < row_of(it));
+            let is_free = |column: usize| taken.get(column).copied().flatten().is_none_or(|last| last < row_of(it));
             while let Some(wrong) = (at..at + size).rev().find(|it| !is_free(*it)) {
                 at = wrong + 1;
             }
             blocks[it].offset = at;
             width = width.max(at + size);
             last = last.max(blocks[it].last);
-            if !is_simple {
-                taken.resize(width, None);
-                taken[at..at + size].fill(Some(blocks[it].last));
-            }
+            taken.resize(width, None);
+            taken[at..at + size].fill(Some(blocks[it].last));
         }
         blocks[node].width = width.max(1);
         blocks[node].last = last;

@@ -316,6 +316,9 @@ enum Side {
     Line(u32),
 }
 
+/// A line over more rows than this takes a gutter: what stands in each row of an axis is kept.
+const LONGEST_ON_AXIS: u32 = 256;
+
 /// Where each line runs downwards, and how many lanes each gutter has.
 fn ways(nodes: &[Node], arcs: &[(u32, u32)], columns: usize) -> (Vec<Way>, Vec<u32>) {
     let mut full: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); columns];
@@ -342,12 +345,14 @@ fn ways(nodes: &[Node], arcs: &[(u32, u32)], columns: usize) -> (Vec<Way>, Vec<u
                 rows.is_empty() || full[column as usize].range(rows).next().is_none()
             };
             let down_to = if from.column == to.column { from.row + 1 } else { from.row };
-            if is_free(to.column, down_to..to.row) && taken[to.column as usize].take(first, last) {
+            let is_short = last - first < LONGEST_ON_AXIS;
+            if is_short && is_free(to.column, down_to..to.row) && taken[to.column as usize].take(first, last) {
                 ways[at] = Way::Axis(to.column);
                 continue;
             }
             let is_other = from.column != to.column;
-            if is_other
+            if is_short
+                && is_other
                 && is_free(from.column, from.row + 1..to.row + 1)
                 && taken[from.column as usize].take(first, last)
             {
