@@ -150,54 +150,30 @@ pub(super) fn route(nodes: &[Node], arcs: &[(u32, u32)], metrics: &Metrics) -> R
     }
     let Columns { axis, gutters, width } = columns_of(nodes, arcs, &ways, &lanes, metrics);
 
-    // Where each line runs downwards, and what it needs sideways at both of its ends.
     let x_of = |way: Way| match way {
         Way::Axis(column) => axis[column as usize],
-        Way::Gutter(at, lane) => {
-            gutters[at as usize] + (i32::try_from(lane).unwrap_or(i32::MAX / 1024) + 1) * metrics.lane
-        }
+        Way::Gutter(at, lane) => gutters[at as usize] + (pixels(lane) + 1) * metrics.lane,
     };
     let vertical: Vec<i32> = ways.iter().map(|it| x_of(*it)).collect();
-    // Of each node with a bar, of each line without one: the interval on a track.
-    let mut spans: [BTreeMap<(u32, Side), (i32, i32)>; 2] = [BTreeMap::new(), BTreeMap::new()];
-    for (at, &(from, to)) in (0..).zip(arcs) {
-        let x = vertical[at as usize];
-        for (zone, node, count) in [(0, from, leaving[from as usize]), (1, to, arriving[to as usize])] {
-            let home = axis[nodes[node as usize].column as usize];
-            let row = nodes[node as usize].row + 1 - zone;
-            let is_bar = count > 1;
-            if !is_bar && x == home {
-                continue;
-            }
-            let side = if is_bar { Side::Bar(node) } else { Side::Line(at) };
-            let overhang = if is_bar { metrics.overhang } else { 0 };
-            let span = spans[zone as usize].entry((row, side)).or_insert((i32::MAX, i32::MIN));
-            *span = (span.0.min(x.min(home) - overhang), span.1.max(x.max(home) + overhang));
-        }
-    }
-    // Tracks of each gap, and then the heights.
-    let mut track_of: [BTreeMap<Side, u32>; 2] = [BTreeMap::new(), BTreeMap::new()];
-    let mut counts = [vec![0_u32; rows + 1], vec![0_u32; rows + 1]];
-    for zone in 0..2 {
-        let mut by_gap: BTreeMap<u32, Vec<(Side, (i32, i32))>> = BTreeMap::new();
-        for (&(gap, side), &span) in &spans[zone] {
-            by_gap.entry(gap).or_default().push((side, span));
-        }
-        for (gap, list) in by_gap {
-            let intervals: Vec<(i32, i32)> = list.iter().map(|it| it.1).collect();
-            let (tracks, count) = tracks(&intervals, metrics.track);
-            counts[zone][gap as usize] = count;
-            track_of[zone].extend(list.iter().map(|it| it.0).zip(tracks));
-        }
-    }
+    let ends: Vec<End> = (0..)
+        .zip(arcs)
+        .flat_map(|(line, &(from, to))| {
+            let [leave, arrive] = [(from, leaving[from as usize]), (to, arriving[to as usize])].map(|(node, count)| {
+                let side = if count > 1 { Side::Bar(node) } else { Side::Line(line) };
+                let home = axis[nodes[node as usize].column as usize];
+                End { gap: nodes[node as usize].row, side, is_below: false, home, x: vertical[line as usize] }
+            });
+            [End { gap: leave.gap + 1, is_below: true, ..leave }, arrive]
+        })
+        .collect();
+    let tracks = Tracks::new(&ends, rows, metrics);
+
     let mut tops = Vec::with_capacity(rows);
-    // Top and bottom of each gap.
     let mut gaps = Vec::with_capacity(rows + 1);
     let mut y = 0;
-    for gap in 0..=rows {
-        let count = i32::try_from(counts[0][gap] + counts[1][gap]).unwrap_or(i32::MAX / 1024);
+    for (gap, count) in tracks.counts.iter().enumerate() {
         let least = if gap == 0 || gap == rows { 0 } else { metrics.gap };
-        let height = least.max((count + 1) * metrics.track * i32::from(count > 0));
+        let height = least.max((pixels(*count) + 1) * metrics.track * i32::from(*count > 0));
         gaps.push((y, y + height));
         y += height;
         if let Some(tall) = tall.get(gap) {
@@ -205,53 +181,118 @@ pub(super) fn route(nodes: &[Node], arcs: &[(u32, u32)], metrics: &Metrics) -> R
             y += tall;
         }
     }
-    let track_y = |zone: usize, gap: u32, track: u32| {
+    let track_y = |gap: u32, is_below: bool, track: u32| {
         let (top, bottom) = gaps[gap as usize];
-        let distance = (i32::try_from(track).unwrap_or(i32::MAX / 1024) + 1) * metrics.track;
-        if zone == 0 { top + distance } else { bottom - distance }
+        let distance = (pixels(track) + 1) * metrics.track;
+        if is_below { top + distance } else { bottom - distance }
     };
     let places: Vec<Point> =
         nodes.iter().map(|it| Point { x: axis[it.column as usize], y: tops[it.row as usize] }).collect();
-    let mut bars = Vec::new();
-    for (zone, spans) in spans.iter().enumerate() {
-        for (&(gap, side), &(from, to)) in spans {
-            if let (Side::Bar(node), Some(&track)) = (side, track_of[zone].get(&side)) {
-                let y = track_y(zone, gap, track);
-                bars.push(Bar { node: node as usize, is_below: zone == 0, y, from, to });
-            }
+    let mut bars: Vec<Bar> = Vec::new();
+    for (&(gap, is_below, side), it) in &tracks.taken {
+        if let Side::Bar(node) = side {
+            let y = track_y(gap, is_below, it.track);
+            bars.push(Bar { node: node as usize, is_below, y, from: it.from, to: it.to });
         }
     }
     bars.sort_by_key(|it| (it.node, it.is_below));
     let mut lines = Vec::with_capacity(arcs.len());
-    for (at, &(from, to)) in (0..).zip(arcs) {
-        let (a, b) = (places[from as usize], places[to as usize]);
-        let x = vertical[at as usize];
-        let start = Point { x: a.x, y: a.y + nodes[from as usize].port };
+    for (&(from, to), ends) in arcs.iter().zip(ends.chunks_exact(2)) {
+        let (from, to) = (from as usize, to as usize);
+        let level = |it: &End| Some(track_y(it.gap, it.is_below, tracks.taken.get(&it.key())?.track));
+        let [leave, arrive] = ends else { continue };
+        let (start, end) = (places[from].moved(0, nodes[from].port), places[to]);
         let mut points = vec![start];
         let mut own = (0, 0);
-        let track = |zone: usize, node: u32, count: u32| {
-            let side = if count > 1 { Side::Bar(node) } else { Side::Line(at) };
-            let gap = nodes[node as usize].row + 1 - u32::from(zone == 1);
-            Some(track_y(zone, gap, *track_of[zone].get(&side)?))
-        };
-        if let Some(y) = track(0, from, leaving[from as usize]) {
-            points.extend([Point { x: a.x, y }, Point { x, y }]);
-            own.0 = if leaving[from as usize] > 1 { 2 } else { 0 };
+        if let Some(y) = level(leave) {
+            points.extend([Point { x: leave.home, y }, Point { x: leave.x, y }]);
+            own.0 = if matches!(leave.side, Side::Bar(_)) { 2 } else { 0 };
         }
-        let y = track(1, to, arriving[to as usize]);
-        if let Some(y) = y {
-            points.push(Point { x, y });
-            own.1 = points.len() - 1;
-            points.push(Point { x: b.x, y });
+        if let Some(y) = level(arrive) {
+            points.extend([Point { x: arrive.x, y }, Point { x: arrive.home, y }]);
         }
-        points.push(b);
-        if y.is_none() || arriving[to as usize] < 2 {
-            own.1 = points.len() - 1;
-        }
-        let is_back = nodes[to as usize].row <= nodes[from as usize].row;
-        lines.push(Line { from: from as usize, to: to as usize, points, is_back, own });
+        points.push(end);
+        own.1 = points.len() - if matches!(arrive.side, Side::Bar(_)) { 3 } else { 1 };
+        lines.push(Line { from, to, points, is_back: nodes[to].row <= nodes[from].row, own });
     }
     Routed { places, bars, lines, width, height: y }
+}
+
+/// A count as a factor of distances.
+fn pixels(count: u32) -> i32 {
+    i32::try_from(count).unwrap_or(i32::MAX).min(i32::MAX / 1024)
+}
+
+/// What takes a track.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Side {
+    /// The bar of a node.
+    Bar(u32),
+    /// A line alone, by its arc.
+    Line(u32),
+}
+
+/// One end of a line: it goes sideways in a gap, from the axis of its node to where it runs downwards.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    /// Gaps are numbered by the row below them.
+    gap: u32,
+    side: Side,
+    /// It leaves the row above the gap; else it arrives at the one below.
+    is_below: bool,
+    home: i32,
+    x: i32,
+}
+
+impl End {
+    fn key(&self) -> (u32, bool, Side) {
+        (self.gap, self.is_below, self.side)
+    }
+}
+
+/// What a bar or line takes on its track.
+#[derive(Debug, Clone, Copy)]
+struct Taking {
+    from: i32,
+    to: i32,
+    track: u32,
+}
+
+/// The tracks of all gaps.
+struct Tracks {
+    /// By gap, side of the gap, and who takes it. A line that goes straight takes none.
+    taken: BTreeMap<(u32, bool, Side), Taking>,
+    /// Tracks of each gap.
+    counts: Vec<u32>,
+}
+
+impl Tracks {
+    fn new(ends: &[End], rows: usize, metrics: &Metrics) -> Self {
+        let mut taken: BTreeMap<(u32, bool, Side), Taking> = BTreeMap::new();
+        for it in ends {
+            let is_bar = matches!(it.side, Side::Bar(_));
+            if !is_bar && it.x == it.home {
+                continue;
+            }
+            let overhang = if is_bar { metrics.overhang } else { 0 };
+            let own = taken.entry(it.key()).or_insert(Taking { from: i32::MAX, to: i32::MIN, track: 0 });
+            own.from = own.from.min(it.x.min(it.home) - overhang);
+            own.to = own.to.max(it.x.max(it.home) + overhang);
+        }
+        let mut counts = vec![0; rows + 1];
+        let mut all: Vec<_> = taken.iter_mut().collect();
+        for of_side in all.chunk_by_mut(|a, b| (a.0.0, a.0.1) == (b.0.0, b.0.1)) {
+            let intervals: Vec<(i32, i32)> = of_side.iter().map(|it| (it.1.from, it.1.to)).collect();
+            let (tracks, count) = tracks(&intervals, metrics.track);
+            for (it, track) in of_side.iter_mut().zip(tracks) {
+                it.1.track = track;
+            }
+            if let Some(first) = of_side.first() {
+                counts[first.0.0 as usize] += count;
+            }
+        }
+        Self { taken, counts }
+    }
 }
 
 /// Where columns and gutters lie.
@@ -277,10 +318,7 @@ fn columns_of(nodes: &[Node], arcs: &[(u32, u32)], ways: &[Way], lanes: &[u32], 
             standing[column as usize].extend((from + 1..to).map(|row| (row, 0, 0)));
         }
     }
-    let lane_width = |at: usize| {
-        let lanes = i32::try_from(lanes[at]).unwrap_or(i32::MAX / 1024);
-        (lanes + 1) * metrics.lane * i32::from(lanes > 0)
-    };
+    let lane_width = |at: usize| (pixels(lanes[at]) + 1) * metrics.lane * i32::from(lanes[at] > 0);
     let rows = nodes.iter().map(|it| it.row as usize + 1).max().unwrap_or(0);
     // How far to the right each row is taken, and all of them.
     let mut taken = vec![i32::MIN; rows];
@@ -305,15 +343,6 @@ fn columns_of(nodes: &[Node], arcs: &[(u32, u32)], ways: &[Way], lanes: &[u32], 
     }
     gutters.push(right);
     Columns { axis, gutters, width: right + lane_width(count) }
-}
-
-/// What takes a track.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Side {
-    /// The bar of a node.
-    Bar(u32),
-    /// A line alone, by its arc.
-    Line(u32),
 }
 
 /// A line over more rows than this takes a gutter: what stands in each row of an axis is kept.

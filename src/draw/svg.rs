@@ -22,8 +22,10 @@ const COLOURS: &[(&str, &str, &str)] = &[
     ("note-soft", "#e6f1fc", "#152a42"),
 ];
 
-/// Selector, colours of properties, other declarations.
-const RULES: &[(&str, &[(&str, &str)], &str)] = &[
+/// Selectors, colours of properties, other declarations.
+type Rule = (&'static str, &'static [(&'static str, &'static str)], &'static str);
+
+const RULES: &[Rule] = &[
     (".page", &[("fill", "paper")], ""),
     (".link", &[("stroke", "ink")], "fill:none;stroke-width:1.5"),
     (".heavy", &[("stroke", "ink")], "fill:none;stroke-width:3"),
