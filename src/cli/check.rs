@@ -9,9 +9,9 @@ use std::time::Instant;
 use clap::ValueEnum;
 use rustc_hash::FxHashMap;
 
-use super::config::{Loader, Source};
+use super::config::{Configured, Loader};
 use super::read::{self, Group};
-use super::{Colour, Exit, Failure, dialect, print};
+use super::{Colour, Exit, Failure, print};
 use crate::db;
 use crate::lint::settings::Overrides;
 use crate::lint::{Diagnostic, Location, Outcome, Severity, SourceView};
@@ -23,18 +23,8 @@ pub(super) struct Arguments {
     /// Files and folders to check, or `-` for standard input [default: the current folder]
     #[arg(value_name = "PATH")]
     paths: Vec<PathBuf>,
-    /// Name of what standard input holds, for messages and for its extension
-    #[arg(long, value_name = "FILE")]
-    stdin_filename: Option<String>,
-    /// What the files are, whatever they look like
-    #[arg(long, value_name = "DIALECT", default_value = "auto", value_parser = dialect())]
-    dialect: Dialect,
-    /// Controller that the programs are for: `TSX 37-22`, `CPU 314`
-    #[arg(long, value_name = "CONTROLLER")]
-    target: Option<String>,
-    /// Encoding of files without a byte order mark, whatever they look like: `windows-1252`, `cp850`
-    #[arg(long, value_name = "NAME")]
-    encoding: Option<String>,
+    #[command(flatten)]
+    reading: read::Reading,
     /// Number of threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -75,12 +65,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "RULE=LEVEL", help_heading = "Rules", value_parser = severity)]
     severity: Vec<(String, Severity)>,
 
-    /// Configuration file, instead of the nearest `plclint.toml` upwards from each path
-    #[arg(long, value_name = "FILE", help_heading = "Configuration", conflicts_with = "isolated")]
-    config: Option<PathBuf>,
-    /// Read no configuration file
-    #[arg(long, help_heading = "Configuration")]
-    isolated: bool,
+    #[command(flatten)]
+    configured: Configured,
 }
 
 fn severity(text: &str) -> Result<(String, Severity), String> {
@@ -178,22 +164,17 @@ fn merge(mut outcomes: Vec<Outcome>) -> Outcome {
 }
 
 pub(super) fn run(mut arguments: Arguments, colour: Colour) -> Result<Exit, Failure> {
-    let source = match (&arguments.config, arguments.isolated) {
-        (Some(file), _) => Source::File(file.clone()),
-        (None, true) => Source::Isolated,
-        (None, false) => Source::Discover,
-    };
     let overrides = Overrides {
         select: arguments.select.take(),
         extend_select: std::mem::take(&mut arguments.extend_select),
         ignore: std::mem::take(&mut arguments.ignore),
         severity: std::mem::take(&mut arguments.severity),
-        controller: arguments.target.take(),
-        encoding: arguments.encoding.take(),
+        controller: arguments.reading.target.take(),
+        encoding: arguments.reading.encoding.take(),
     };
-    let mut loader = Loader::new(source, overrides)?;
-    let groups = read::groups(&arguments.paths, arguments.stdin_filename.as_deref(), &mut loader)?;
-    let outcome = lint(groups, arguments.dialect, arguments.threads)?;
+    let mut loader = Loader::new(arguments.configured.source(), overrides)?;
+    let groups = read::groups(&arguments.paths, arguments.reading.stdin_filename.as_deref(), &mut loader)?;
+    let outcome = lint(groups, arguments.reading.dialect, arguments.threads)?;
     let options = Options { colour: false, root: Some(loader.current().to_owned()) };
     report(&arguments, &outcome, &options, colour)?;
     Ok(exit(&outcome, arguments.exit_zero, arguments.max_warnings))

@@ -6,13 +6,12 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::config::{Loader, Source};
-use super::{Exit, Failure, complain, dialect, print, read};
+use super::config::{Configured, Loader};
+use super::{Exit, Failure, complain, print, read};
 use crate::db::{self, ProgramDrawing};
 use crate::draw::{self, Drawing, Kind};
 use crate::lint::settings::Overrides;
 use crate::lint::{Unread, UnreadReason};
-use crate::source::detect::Dialect;
 
 #[derive(Debug, clap::Args)]
 #[command(
@@ -22,18 +21,8 @@ pub(super) struct Arguments {
     /// File or folder to draw, or `-` for standard input
     #[arg(value_name = "PATH")]
     path: PathBuf,
-    /// Name of what standard input holds, for messages and for its extension
-    #[arg(long, value_name = "FILE")]
-    stdin_filename: Option<String>,
-    /// What the files are, whatever they look like
-    #[arg(long, value_name = "DIALECT", default_value = "auto", value_parser = dialect())]
-    dialect: Dialect,
-    /// Controller that the programs are for: `TSX 37-22`, `CPU 314`
-    #[arg(long, value_name = "CONTROLLER")]
-    target: Option<String>,
-    /// Encoding of files without a byte order mark, whatever they look like: `windows-1252`, `cp850`
-    #[arg(long, value_name = "NAME")]
-    encoding: Option<String>,
+    #[command(flatten)]
+    reading: read::Reading,
 
     /// How to write drawings
     #[arg(long, value_enum, default_value_t = Format::Svg, help_heading = "Output")]
@@ -54,12 +43,8 @@ pub(super) struct Arguments {
     #[arg(long, help_heading = "Output")]
     no_findings: bool,
 
-    /// Configuration file, instead of the nearest `plclint.toml` upwards from the path
-    #[arg(long, value_name = "FILE", help_heading = "Configuration", conflicts_with = "isolated")]
-    config: Option<PathBuf>,
-    /// Read no configuration file
-    #[arg(long, help_heading = "Configuration")]
-    isolated: bool,
+    #[command(flatten)]
+    configured: Configured,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -111,23 +96,18 @@ enum Theme {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let source = match (&arguments.config, arguments.isolated) {
-        (Some(file), _) => Source::File(file.clone()),
-        (None, true) => Source::Isolated,
-        (None, false) => Source::Discover,
-    };
     let overrides = Overrides {
-        controller: arguments.target.clone(),
-        encoding: arguments.encoding.clone(),
+        controller: arguments.reading.target.clone(),
+        encoding: arguments.reading.encoding.clone(),
         ..Overrides::default()
     };
-    let mut loader = Loader::new(source, overrides)?;
+    let mut loader = Loader::new(arguments.configured.source(), overrides)?;
     let path = std::slice::from_ref(&arguments.path);
     let mut drawings = Vec::new();
     let mut unread = Vec::new();
     let mut is_read = false;
-    for group in read::groups(path, arguments.stdin_filename.as_deref(), &mut loader)? {
-        let files = group.read(arguments.dialect);
+    for group in read::groups(path, arguments.reading.stdin_filename.as_deref(), &mut loader)? {
+        let files = group.read(arguments.reading.dialect);
         unread.extend(files.unread);
         let opened = db::open(files.inputs, group.settings);
         is_read |= !opened.files.is_empty();

@@ -5,12 +5,29 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::Failure;
 use super::config::Loader;
+use super::{Failure, dialect};
 use crate::db::Input;
 use crate::lint::{Settings, Unread, UnreadReason};
 use crate::source::detect::{Detected, Dialect, FileHint, load};
 use crate::source::walk::{self, Candidate};
+
+/// How files are read.
+#[derive(Debug, clap::Args)]
+pub(super) struct Reading {
+    /// Name of what standard input holds, for messages and for its extension
+    #[arg(long, value_name = "FILE")]
+    pub(super) stdin_filename: Option<String>,
+    /// What the files are, whatever they look like
+    #[arg(long, value_name = "DIALECT", default_value = "auto", value_parser = dialect())]
+    pub(super) dialect: Dialect,
+    /// Controller that the programs are for: `TSX 37-22`, `CPU 314`
+    #[arg(long, value_name = "CONTROLLER")]
+    pub(super) target: Option<String>,
+    /// Encoding of files without a byte order mark, whatever they look like: `windows-1252`, `cp850`
+    #[arg(long, value_name = "NAME")]
+    pub(super) encoding: Option<String>,
+}
 
 /// Files of a run: those to check, and those that are left out.
 #[derive(Default)]
