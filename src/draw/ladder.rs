@@ -361,20 +361,25 @@ impl Rung {
             y += it;
             places.rows.push(y);
         }
+        if !head.shapes.is_empty() {
+            scene.groups.push(head);
+        }
+        // Findings about the rung colour its heading alone.
+        let mut frame = Group::default();
         let (top, right) = (places.top(0) + 6, places.x(u32::MAX));
         for x in [places.x(0), right] {
-            head.line(Stroke::Heavy, [Point::new(x, top), Point::new(x, y)]);
+            frame.line(Stroke::Heavy, [Point::new(x, top), Point::new(x, y)]);
         }
         for &(row, column) in &self.vertical {
             let x = places.x(column);
-            head.line(Stroke::Link, [Point::new(x, places.wire(row)), Point::new(x, places.wire(row + 1))]);
+            frame.line(Stroke::Link, [Point::new(x, places.wire(row)), Point::new(x, places.wire(row + 1))]);
         }
         // Links in a row are one line.
         let mut run: Option<(u32, u32, u32)> = None;
         let mut draw = |it: Option<(u32, u32, u32)>| {
             if let Some((row, from, to)) = it {
                 let y = places.wire(row);
-                head.line(Stroke::Link, [Point::new(places.x(from), y), Point::new(places.x(to), y)]);
+                frame.line(Stroke::Link, [Point::new(places.x(from), y), Point::new(places.x(to), y)]);
             }
         };
         for it in self.cells.iter().filter(|it| it.is_plain_link()) {
@@ -387,7 +392,7 @@ impl Rung {
             };
         }
         draw(run);
-        scene.groups.push(head);
+        scene.groups.push(frame);
         scene.groups.extend(self.cells.iter().filter(|it| !it.is_plain_link()).map(|it| it.paint(places)));
         y + 22
     }
