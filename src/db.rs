@@ -91,6 +91,10 @@ pub struct Unit<'db> {
     #[tracked]
     #[returns(copy)]
     pub unsupported: Option<&'static str>,
+    /// Whether something says what the unit is; else it may be a listing out of something larger.
+    #[tracked]
+    #[returns(copy)]
+    pub is_named: bool,
 }
 
 /// Units of a file with their offsets in bytes. They tile the text.
@@ -99,7 +103,8 @@ pub fn layout<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[(Unit<'db>, u32)]>
     let text = file.text(db);
     let units = spans(db, file).iter().map(|span| {
         let part: Arc<str> = text.get(std::ops::Range::<usize>::from(span.range)).unwrap_or_default().into();
-        let unit = Unit::new(db, file, span.key.clone(), part, span.language, span.entity.clone(), span.unsupported);
+        let (key, entity) = (span.key.clone(), span.entity.clone());
+        let unit = Unit::new(db, file, key, part, span.language, entity, span.unsupported, span.is_named);
         (unit, u32::from(span.range.start()))
     });
     units.collect()
@@ -133,10 +138,16 @@ pub fn tree<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Parse {
 }
 
 fn parse(db: &dyn Db, unit: Unit<'_>) -> Parse {
-    if unit.unsupported(db).is_some() {
-        return syntax::opaque(unit.text(db));
+    let text = unit.text(db);
+    match unit.unsupported(db) {
+        None => syntax::parse(unit.language(db), text),
+        Some(detect::unsupported::PL7_2_LANGUAGE) => {
+            let message =
+                "PL7-2 has ladder and Grafcet: this part says that it is in another language, and is not read";
+            syntax::opaque(text, Some((first_line(text), message)))
+        }
+        Some(_) => syntax::opaque(text, None),
     }
-    syntax::parse(unit.language(db), unit.text(db))
 }
 
 /// What outlives the tree and the model of a unit.
@@ -159,10 +170,9 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let tree = parse(db, unit);
     let model = lower::lower(tree.syntax(), text, unit.entity(db).clone(), language);
     let mut facts = UnitFacts::new(&model);
-    facts.has_gaps |=
-        unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
+    facts.has_gaps |= unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit);
     let settings = db.project().settings(db);
-    let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
+    let family = unit_family(db, unit).unwrap_or(Family::Pl7);
     if let Some(condition) = settings.condition_of(unit.entity(db)).filter(|_| family == Family::Pl7) {
         facts.run_under(condition);
     }
@@ -193,13 +203,16 @@ fn is_commented(root: syntax::SyntaxNode<'_>, model: &UnitModel) -> bool {
     }
 }
 
-/// Whether the unit is PL7 text that does not say what it is: a listing shown in a document, part of something unread.
-fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: syntax::SyntaxNode<'_>) -> bool {
-    let file = unit.file(db);
-    matches!(file.detected(db), Detected::Pasted(_) | Detected::Pl72)
-        && *unit.entity(db) != Entity::Container
-        && db.project().settings(db).entity_address(file.path(db)).is_none()
-        && !root.children().any(|it| it.kind() == SyntaxKind::Heading)
+/// Whether the unit is text that does not say what it is: a listing shown in a document, part of something unread.
+fn is_fragment(db: &dyn Db, unit: Unit<'_>) -> bool {
+    *unit.entity(db) != Entity::Container && !unit.is_named(db)
+}
+
+/// The first line of code of a unit, which names it.
+fn first_line(text: &str) -> TextRange {
+    split::first_code(text)
+        .and_then(|it| Some(TextRange::new(it.start.try_into().ok()?, it.end.try_into().ok()?)))
+        .unwrap_or_default()
 }
 
 /// Files that make up one program, in path order. The key is the folder, or the file when it stands alone.
@@ -214,16 +227,40 @@ pub struct Program<'db> {
     pub files: Vec<SourceFile>,
 }
 
-/// What of a file says which program it belongs to.
+/// Whose controllers a unit is for: code by its language, what stands around code as its file.
+fn unit_family(db: &dyn Db, unit: Unit<'_>) -> Option<Family> {
+    match unit.language(db) {
+        Language::Exchange => family(unit.file(db).detected(db)),
+        Language::Awl(_) => Some(Family::Step7),
+        language if language.is_pl7_2() => Some(Family::Pl72),
+        _ => Some(Family::Pl7),
+    }
+}
+
+/// Families of the units of a file, of its code only where it has any: parts of PL7 and of PL7-2 may share a text.
 #[salsa::tracked(returns(deref))]
-fn named_entities(db: &dyn Db, file: SourceFile) -> Box<[Entity]> {
-    let entities = units(db, file).iter().map(|unit| unit.entity(db));
-    entities.filter(|it| **it != Entity::Container).cloned().collect()
+fn families(db: &dyn Db, file: SourceFile) -> Box<[Family]> {
+    let units = units(db, file);
+    let is_code = |it: &&Unit<'_>| *it.entity(db) != Entity::Container;
+    let has_code = units.iter().any(|it| is_code(&it));
+    let is_wanted = |it: &&Unit<'_>| !has_code || is_code(it);
+    let mut families: Vec<Family> = units.iter().filter(is_wanted).filter_map(|&it| unit_family(db, it)).collect();
+    families.extend(family(file.detected(db)).filter(|_| *declares_variables(db, file)));
+    families.sort_unstable();
+    families.dedup();
+    families.into_boxed_slice()
+}
+
+/// What of a file says which program of a family it belongs to.
+#[salsa::tracked(returns(deref))]
+fn named_entities(db: &dyn Db, file: SourceFile, family: Family) -> Box<[Entity]> {
+    let units = units(db, file).iter().filter(|&&it| unit_family(db, it) == Some(family));
+    units.map(|it| it.entity(db)).filter(|it| **it != Entity::Container).cloned().collect()
 }
 
 /// Whether a file is a whole application (`.FEF`), by its content: it holds the variables as well as the code.
-fn is_application(db: &dyn Db, file: SourceFile) -> bool {
-    !named_entities(db, file).is_empty() && *declares_variables(db, file)
+fn is_application(db: &dyn Db, file: SourceFile, family: Family) -> bool {
+    !named_entities(db, file, family).is_empty() && *declares_variables(db, file)
 }
 
 /// Whether a file declares variables beside or without code: it belongs to the code around it.
@@ -235,7 +272,7 @@ fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
 
 /// The programs of the project.
 ///
-/// Files of one folder and vendor are one program, unless two of them define the same entity (two variants of one
+/// Files of one folder and family are one program, unless two of them define the same entity (two variants of one
 /// machine side by side) or hold code that does not say what it is: those stand alone. Where whole applications lie beside
 /// exports of their parts, each application is a program, and the other files are one, to which files of variables belong.
 #[salsa::tracked(returns(deref))]
@@ -245,9 +282,9 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     let mut folders: Vec<(String, Family, Vec<SourceFile>)> = Vec::new();
     let mut alone: Vec<(Family, SourceFile)> = Vec::new();
     let mut index: FxHashMap<(String, Family), usize> = FxHashMap::default();
-    for &file in project.files(db) {
-        let Some(family) = family(file.detected(db)) else { continue };
-        let entities = named_entities(db, file);
+    let parts = project.files(db).iter().flat_map(|&file| families(db, file).iter().map(move |&family| (family, file)));
+    for (family, file) in parts {
+        let entities = named_entities(db, file, family);
         let is_part = !entities.is_empty() || *declares_variables(db, file);
         // A project is a whole program, whatever exports of it lie beside it.
         let is_project = file.detected(db) == Detected::Stx;
@@ -264,14 +301,14 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     }
     let mut programs = Vec::new();
     for (folder, family, files) in folders {
-        if scope != ProgramScope::Auto || !clash(db, &files) {
+        if scope != ProgramScope::Auto || !clash(db, &files, family) {
             programs.push(Program::new(db, folder, family, files));
             continue;
         }
         let (whole, parts): (Vec<SourceFile>, Vec<SourceFile>) =
-            files.into_iter().partition(|&it| is_application(db, it));
+            files.into_iter().partition(|&it| is_application(db, it, family));
         alone.extend(whole.into_iter().map(|file| (family, file)));
-        if parts.is_empty() || clash(db, &parts) {
+        if parts.is_empty() || clash(db, &parts, family) {
             alone.extend(parts.into_iter().map(|file| (family, file)));
         } else {
             programs.push(Program::new(db, folder, family, parts));
@@ -284,10 +321,10 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
 }
 
 /// Whether two files define the same entity. One that repeats its own is judged by itself.
-fn clash(db: &dyn Db, files: &[SourceFile]) -> bool {
+fn clash(db: &dyn Db, files: &[SourceFile], family: Family) -> bool {
     let mut seen = FxHashSet::default();
     files.iter().any(|&file| {
-        let own: FxHashSet<&Entity> = named_entities(db, file).iter().collect();
+        let own: FxHashSet<&Entity> = named_entities(db, file, family).iter().collect();
         own.into_iter().filter(|it| !seen.insert(*it)).count() > 0
     })
 }
@@ -306,16 +343,17 @@ pub fn family(detected: Detected) -> Option<Family> {
     }
 }
 
-/// The program that a file belongs to.
-#[salsa::tracked]
-pub fn program_of<'db>(db: &'db dyn Db, file: SourceFile) -> Option<Program<'db>> {
-    programs(db).iter().copied().find(|it| it.files(db).contains(&file))
+/// The programs that a file belongs to: one of each family of its units.
+#[salsa::tracked(returns(deref))]
+pub fn programs_of<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Program<'db>]> {
+    programs(db).iter().copied().filter(|it| it.files(db).contains(&file)).collect()
 }
 
 /// Units of a program: file order, then order in the file.
 #[salsa::tracked(returns(deref))]
 pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'db>]> {
-    program.files(db).iter().flat_map(|&file| units(db, file).iter().copied()).collect()
+    let units = program.files(db).iter().flat_map(|&file| units(db, file).iter().copied());
+    units.filter(|&it| unit_family(db, it) == Some(program.family(db))).collect()
 }
 
 /// What the symbols of a program name. It has no places.
@@ -421,14 +459,18 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
             found.extend(shifted);
         }
     }
-    if let Some(program) = *program_of(db, file) {
+    for &program in programs_of(db, file) {
         let mut places = Places::new(db, program);
         for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
             found.extend(finding.clone().map(|site| places.of(site)));
         }
         let table = symbol_table(db, program);
         if !table.is_empty() {
-            found.iter_mut().for_each(|it| it.message = table.annotate(&it.message));
+            let is_of = |it: &Finding<FilePlace>| {
+                let unit = unit_at(layout, it.place.range.start());
+                unit.and_then(|it| unit_family(db, it)) == Some(program.family(db))
+            };
+            found.iter_mut().filter(|it| is_of(it)).for_each(|it| it.message = table.annotate(&it.message));
         }
     }
     if file.detected(db) == Detected::Stx {
@@ -683,7 +725,6 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
         };
         outcome.unread.push(Unread { path: it.path, reason });
     }
-    outcome.untargeted = untargeted(&linted, &settings, &outcome.active);
     let encodings: Vec<&'static str> = linted.iter().map(|it| it.source.encoding.as_str()).collect();
     let mut db = RootDatabase::new(settings, None);
     partly_read.dedup();
@@ -731,6 +772,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
         }
         outcome.files.push(view);
     }
+    outcome.untargeted = untargeted(&db, &files, &outcome.active);
     for &program in programs(&db) {
         for code in &program_findings(&db, program).failed {
             outcome.internal_errors.push(format!("{}: rule {code} failed", program.key(&db)));
@@ -749,13 +791,15 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     outcome
 }
 
-/// Families of files for which no controller is configured, though an active rule asks for one.
-fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Family> {
+/// Families of code for which no controller is configured, though an active rule asks for one.
+fn untargeted(db: &dyn Db, files: &[SourceFile], active: &[&Rule]) -> Vec<Family> {
+    let settings = db.project().settings(db);
     let asks = |family: Family| active.iter().any(|it| it.by_controller && it.is_for_family(family));
-    let is_named = |it: &Input| it.detected == Detected::Stx && stx::controller(&it.source.text).is_some();
-    let is_read = |wanted: Family| inputs.iter().any(|it| family(it.detected) == Some(wanted) && !is_named(it));
+    let read = files.iter().filter(|&&it| named_controller(db, it).is_none()).map(|&it| families(db, it));
     let mut families = vec![Family::Pl7, Family::Pl72, Family::Step7];
-    families.retain(|&it| settings.target(it).controller().is_none() && asks(it) && is_read(it));
+    families.retain(|&it| {
+        settings.target(it).controller().is_none() && asks(it) && read.clone().any(|of| of.contains(&it))
+    });
     families
 }
 
@@ -778,6 +822,10 @@ fn unread_form(db: &dyn Db, file: SourceFile) -> Option<&'static str> {
 }
 
 fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
+    if families(db, file).len() > 1 {
+        let names: Vec<&str> = families(db, file).iter().map(|it| it.as_str()).collect();
+        return names.join(" and ");
+    }
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
