@@ -170,7 +170,10 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let tree = parse(db, unit);
     let model = lower::lower(tree.syntax(), text, unit.entity(db).clone(), language);
     let mut facts = UnitFacts::new(&model);
-    facts.has_gaps |= unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit);
+    facts.has_gaps |= unit.unsupported(db).is_some()
+        || !tree.errors().is_empty()
+        || ends_open(tree.syntax())
+        || is_fragment(db, unit);
     let settings = db.project().settings(db);
     let family = unit_family(db, unit).unwrap_or(Family::Pl7);
     if let Some(condition) = settings.condition_of(unit.entity(db)).filter(|_| family == Family::Pl7) {
@@ -193,6 +196,15 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
 #[salsa::tracked]
 pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitFacts> {
     analysis(db, unit).facts.clone()
+}
+
+/// Whether a comment that nobody closes has swallowed the rest of a unit.
+fn ends_open(root: syntax::SyntaxNode<'_>) -> bool {
+    let mut last = root.children_with_tokens().last();
+    while let Some(node) = last.and_then(|it| it.into_node()) {
+        last = node.children_with_tokens().last();
+    }
+    last.and_then(|it| it.into_token()).is_some_and(|it| it.kind() == SyntaxKind::UnclosedComment)
 }
 
 fn is_commented(root: syntax::SyntaxNode<'_>, model: &UnitModel) -> bool {
@@ -360,7 +372,7 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
 #[salsa::tracked]
 pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
     let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
-    SymbolTable::new(declaring.map(|&unit| &**facts(db, unit)))
+    SymbolTable::new(program.family(db), declaring.map(|&unit| &**facts(db, unit)))
 }
 
 /// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].

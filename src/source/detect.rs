@@ -410,7 +410,16 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
 fn is_variable(line: &str) -> bool {
     let (name, rest) = word(line);
     let rest = rest.trim_start();
-    !name.is_empty() && (rest.starts_with("AT %") || rest.starts_with("at %") || rest.starts_with(':'))
+    let address = strip_prefix_ignore_case(rest, "AT ").map(str::trim_start);
+    !name.is_empty()
+        && (rest.starts_with(':') || address.is_some_and(|it| it.starts_with('%') || declared_by_pl7_2(it)))
+}
+
+/// Whether a declaration, behind its `AT`, has an address that PL7-2 alone has: `B3`, `I0,05`.
+fn declared_by_pl7_2(address: &str) -> bool {
+    let end = address.find(|it: char| it.is_whitespace() || matches!(it, ':' | ';' | '(')).unwrap_or(address.len());
+    let address = address.get(..end.min(LONGEST_PL7_2)).unwrap_or_default();
+    !address.starts_with('%') && object::pl72::parse(address).is_ok_and(|it| it.object.class != object::Class::Fault)
 }
 
 /// How much of a text is looked at.
@@ -756,9 +765,12 @@ fn has_pl7_object(line: &str) -> bool {
 /// has a comma.
 fn has_pl7_2_object(line: &str) -> bool {
     let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
+    let declared = line.split_once(" AT ").is_some_and(|it| declared_by_pl7_2(it.1.trim_start()));
     let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
     let is_transfer = || line.contains("->") && line.contains("END_BLOCK") && !line.contains(":=");
-    words.any(|it| object::pl72::parse(it).is_ok_and(|it| it.object.class != object::Class::Fault)) || is_transfer()
+    words.any(|it| object::pl72::parse(it).is_ok_and(|it| it.object.class != object::Class::Fault))
+        || declared
+        || is_transfer()
 }
 
 /// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
