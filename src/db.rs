@@ -198,8 +198,12 @@ pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitFacts> {
     analysis(db, unit).facts.clone()
 }
 
-/// Whether a comment that nobody closes has swallowed the rest of a unit.
+/// Whether a comment that nobody closes has swallowed the rest of a unit. What looks like one in the vendor's own block need
+/// not be one.
 fn ends_open(root: syntax::SyntaxNode<'_>) -> bool {
+    if syntax::exchange::Block::all(root).last().is_some_and(|it| it.is_called("VENDOR")) {
+        return false;
+    }
     let mut last = root.children_with_tokens().last();
     while let Some(node) = last.and_then(|it| it.into_node()) {
         last = node.children_with_tokens().last();
@@ -237,6 +241,15 @@ pub struct Program<'db> {
     #[tracked]
     #[returns(deref)]
     pub files: Vec<SourceFile>,
+    /// Files of variables that several programs use, which are a program of their own: what a rule says of them comes from
+    /// there.
+    #[tracked]
+    #[returns(deref)]
+    pub variables: Vec<SourceFile>,
+    /// Whether its file stands alone only because others of the folder define what it does.
+    #[tracked]
+    #[returns(copy)]
+    pub is_variant: bool,
 }
 
 /// Whose controllers a unit is for: code by its language, what stands around code as its file.
@@ -287,12 +300,13 @@ fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
 /// Files of one folder and family are one program, unless two of them define the same entity (two variants of one
 /// machine side by side) or hold code that does not say what it is: those stand alone. Where whole applications lie beside
 /// exports of their parts, each application is a program, and the other files are one, to which files of variables belong.
+/// Among variants, the files of variables serve each.
 #[salsa::tracked(returns(deref))]
 pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     let project = db.project();
     let scope = project.settings(db).scope();
     let mut folders: Vec<(String, Family, Vec<SourceFile>)> = Vec::new();
-    let mut alone: Vec<(Family, SourceFile)> = Vec::new();
+    let mut alone: Vec<(Family, SourceFile, Vec<SourceFile>, bool)> = Vec::new();
     let mut index: FxHashMap<(String, Family), usize> = FxHashMap::default();
     let parts = project.files(db).iter().flat_map(|&file| families(db, file).iter().map(move |&family| (family, file)));
     for (family, file) in parts {
@@ -301,7 +315,7 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
         // A project is a whole program, whatever exports of it lie beside it.
         let is_project = file.detected(db) == Detected::Stx;
         if scope == ProgramScope::File || is_project || !is_part || entities.contains(&Entity::Listing) {
-            alone.push((family, file));
+            alone.push((family, file, Vec::new(), false));
             continue;
         }
         let folder = folder_of(file.path(db)).to_owned();
@@ -314,20 +328,24 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     let mut programs = Vec::new();
     for (folder, family, files) in folders {
         if scope != ProgramScope::Auto || !clash(db, &files, family) {
-            programs.push(Program::new(db, folder, family, files));
+            programs.push(Program::new(db, folder, family, files, Vec::new(), false));
             continue;
         }
         let (whole, parts): (Vec<SourceFile>, Vec<SourceFile>) =
             files.into_iter().partition(|&it| is_application(db, it, family));
-        alone.extend(whole.into_iter().map(|file| (family, file)));
-        if parts.is_empty() || clash(db, &parts, family) {
-            alone.extend(parts.into_iter().map(|file| (family, file)));
-        } else {
-            programs.push(Program::new(db, folder, family, parts));
+        let is_clash = clash(db, &whole, family);
+        alone.extend(whole.into_iter().map(|file| (family, file, Vec::new(), is_clash)));
+        if !parts.is_empty() && !clash(db, &parts, family) {
+            programs.push(Program::new(db, folder, family, parts, Vec::new(), false));
+            continue;
         }
+        let (code, variables): (Vec<SourceFile>, Vec<SourceFile>) =
+            parts.into_iter().partition(|&it| !named_entities(db, it, family).is_empty());
+        alone.extend(code.into_iter().map(|file| (family, file, variables.clone(), true)));
+        alone.extend(variables.into_iter().map(|file| (family, file, Vec::new(), false)));
     }
-    for (family, file) in alone {
-        programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file]));
+    for (family, file, variables, is_variant) in alone {
+        programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file], variables, is_variant));
     }
     programs.into_boxed_slice()
 }
@@ -361,10 +379,11 @@ pub fn programs_of<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Program<'db>]
     programs(db).iter().copied().filter(|it| it.files(db).contains(&file)).collect()
 }
 
-/// Units of a program: file order, then order in the file.
+/// Units of a program: file order, then order in the file; those of shared variables last.
 #[salsa::tracked(returns(deref))]
 pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'db>]> {
-    let units = program.files(db).iter().flat_map(|&file| units(db, file).iter().copied());
+    let files = program.files(db).iter().chain(program.variables(db));
+    let units = files.flat_map(|&file| units(db, file).iter().copied());
     units.filter(|&it| unit_family(db, it) == Some(program.family(db))).collect()
 }
 
@@ -771,6 +790,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             entities: 0,
             not_understood: 0,
             made_of: None,
+            is_variant: programs_of(&db, file).iter().any(|it| it.is_variant(&db)),
         };
         if file.detected(&db) == Detected::Stx {
             let cross_reference = units(&db, file).iter().any(|it| it.language(&db) == Language::Pl7Xref);

@@ -353,13 +353,20 @@ fn an_application_beside_exports_of_its_parts() {
         "variables.scy:5:45: N004[symbol-unused] note: the program does not use `Motor`, the symbol of `%Q2.1` [file]",
     ];
     assert_eq!(lines[..lines.len() - 1], expected);
-    // A second version of the section: which of the two the variables are for, nobody can tell.
+    // A second version of the section: the variables are for each of the two, and what one does not use says nothing.
     write("old.st", MAIN);
-    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001"]);
-    assert!(out.starts_with("plant.fef:12:12: W001"), "{out}");
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,N004,N001"]);
+    let lines: Vec<&str> = out.lines().collect();
+    let old = expected[0].replace("main.st", "old.st");
+    assert_eq!(lines[..lines.len() - 1], [expected[0], &old, expected[1], expected[2]]);
+    let summary = lines[lines.len() - 1];
+    assert!(summary.contains("; 2 files define what others of the folder define too"), "{summary}");
+    // What the variables have wrong is said once.
+    write("variables.scy", &VARIABLES.replace("Motor AT", "_Motor AT"));
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "N001"]);
+    assert_eq!(out.matches("N001").count(), 1, "{out}");
 }
 
-/// A DFB type that somebody saved without the frame of the exchange format belongs to the sections beside it.
 /// Findings of a text that is given as one file.
 fn findings_of(path: &str, text: &str) -> Vec<(String, String, String)> {
     let outcome = check(path, text.as_bytes());
@@ -415,6 +422,7 @@ fn every_page_of_a_chart_is_under_its_heading() {
     assert!(!codes(&chart("SET %Q2.0")).contains(&"G011".to_owned()), "a part of a chart");
 }
 
+/// A DFB type that somebody saved without the frame of the exchange format belongs to the sections beside it.
 #[test]
 fn a_dfb_type_without_a_frame() {
     let folder = TempDir::new().expect("a temporary folder");

@@ -24,6 +24,8 @@ pub struct SourceView {
     pub not_understood: usize,
     /// For a text that is not the file's own but made of its tables: lines and columns of it mean nothing to others.
     pub made_of: Option<MadeOf>,
+    /// Other files of its folder define parts that it defines too, so that it was checked by itself.
+    pub is_variant: bool,
 }
 
 /// What the text of a binary file was made of.

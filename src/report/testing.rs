@@ -28,6 +28,7 @@ pub(crate) fn view(path: &str, text: &str, encoding: &'static str) -> SourceView
         entities: 2,
         not_understood: 0,
         made_of: None,
+        is_variant: false,
     }
 }
 
