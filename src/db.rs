@@ -62,6 +62,9 @@ pub struct Project {
     pub partly_read: Vec<String>,
     #[returns(ref)]
     pub settings: Settings,
+    /// The file of the settings, in which findings may stand.
+    #[returns(copy)]
+    pub configuration: SourceFile,
 }
 
 #[salsa::db]
@@ -141,7 +144,8 @@ fn parse(db: &dyn Db, unit: Unit<'_>) -> Parse {
     let text = unit.text(db);
     match unit.unsupported(db) {
         None => syntax::parse(unit.language(db), text),
-        Some(detect::unsupported::PL7_2_LANGUAGE) => {
+        // A file of nothing else is one that is not read.
+        Some(detect::unsupported::PL7_2_LANGUAGE) if unread_form(db, unit.file(db)).is_none() => {
             let message =
                 "PL7-2 has ladder and Grafcet: this part says that it is in another language, and is not read";
             syntax::opaque(text, Some((first_line(text), message)))
@@ -424,7 +428,9 @@ fn program_findings_by_file<'db>(db: &'db dyn Db, program: Program<'db>) -> FxHa
     let units = program_units(db, program);
     let mut by_file: FxHashMap<SourceFile, Vec<Finding<Site>>> = FxHashMap::default();
     for finding in &program_findings(db, program).findings {
-        if let Some(unit) = units.get(finding.place.unit as usize) {
+        if finding.place.is_configured() {
+            by_file.entry(db.project().configuration(db)).or_default().push(finding.clone());
+        } else if let Some(unit) = units.get(finding.place.unit as usize) {
             by_file.entry(unit.file(db)).or_default().push(finding.clone());
         }
     }
@@ -546,6 +552,28 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     findings.into_boxed_slice()
 }
 
+/// Findings in the configuration, sorted. What several programs have wrong there is said once.
+pub fn configuration_findings(db: &dyn Db) -> Vec<FileFinding> {
+    let project = db.project();
+    let (settings, file) = (project.settings(db), project.configuration(db));
+    let selection = settings.selection(file.path(db));
+    let mut findings: Vec<FileFinding> = Vec::new();
+    for &program in programs(db) {
+        let mut places = Places::new(db, program);
+        for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
+            let Some(severity) = selection.severity(finding.rule, finding.severity) else { continue };
+            let Some(mut finding) = finding.clone().map(|site| places.of(site)) else { continue };
+            finding.severity = severity;
+            finding.message = symbol_table(db, program).annotate(&finding.message);
+            findings.push(FileFinding { finding, entity: "configuration".to_owned(), suppressed: None });
+        }
+    }
+    let key = |it: &FileFinding| (it.finding.place.range.start(), it.finding.rule.code, it.finding.message.clone());
+    findings.sort_by_cached_key(key);
+    findings.dedup_by_key(|it| key(it));
+    findings
+}
+
 /// Where the sites of a program lie.
 struct Places<'db> {
     db: &'db dyn Db,
@@ -560,6 +588,13 @@ impl<'db> Places<'db> {
     }
 
     fn of(&mut self, site: Site) -> Option<FilePlace> {
+        let project = self.db.project();
+        if site.is_configured() {
+            return Some(FilePlace {
+                file: project.configuration(self.db),
+                range: project.settings(self.db).place(site)?,
+            });
+        }
         let unit = *self.units.get(site.unit as usize)?;
         let file = unit.file(self.db);
         if !self.offsets.contains_key(&unit) {
@@ -666,7 +701,9 @@ impl RootDatabase {
             })
         });
         let mut db = Self { project: None, storage: salsa::Storage::new(log) };
-        db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings));
+        let source = settings.source();
+        let configuration = SourceFile::new(&db, source.path.clone(), source.text.clone(), Detected::NotPlc, None);
+        db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings, configuration));
         db
     }
 
@@ -766,8 +803,12 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             facts(db, unit);
         }
     });
-    let found: Vec<Vec<FileFinding>> =
+    let mut found: Vec<Vec<FileFinding>> =
         files.par_iter().map_with(db.clone(), |db, &file| file_findings(db, file).to_vec()).collect();
+    found.push(configuration_findings(&db));
+    let configuration = db.project().configuration(&db);
+    let names = |it: &FileFinding| it.finding.names(|place| place.file == configuration);
+    let mut shown_configuration = found.iter().flatten().any(names).then(|| configuration_view(&db));
     let mut indices: FxHashMap<SourceFile, u32> = FxHashMap::default();
     for (at, &file) in files.iter().enumerate() {
         for &unit in units(&db, file) {
@@ -781,6 +822,10 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             outcome.unread.push(Unread { path: file.path(&db).to_owned(), reason });
             continue;
         }
+        if let Some(view) = shown_configuration.take_if(|it| it.path.as_str() < file.path(&db)) {
+            indices.insert(configuration, u32::try_from(outcome.files.len()).unwrap_or(u32::MAX));
+            outcome.files.push(view);
+        }
         indices.insert(file, u32::try_from(outcome.files.len()).unwrap_or(u32::MAX));
         let mut view = SourceView {
             path: file.path(&db).to_owned(),
@@ -790,6 +835,7 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             entities: 0,
             not_understood: 0,
             made_of: None,
+            is_configuration: false,
             is_variant: programs_of(&db, file).iter().any(|it| it.is_variant(&db)),
         };
         if file.detected(&db) == Detected::Stx {
@@ -802,6 +848,10 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             }
             view.not_understood += analysis(&db, unit).not_understood;
         }
+        outcome.files.push(view);
+    }
+    if let Some(view) = shown_configuration {
+        indices.insert(configuration, u32::try_from(outcome.files.len()).unwrap_or(u32::MAX));
         outcome.files.push(view);
     }
     outcome.untargeted = untargeted(&db, &files, &outcome.active);
@@ -817,10 +867,28 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             outcome.diagnostics.push(Diagnostic { finding: it, entity, suppressed });
         }
     }
+    // Those of the configuration come last, and its path may stand anywhere.
+    outcome.diagnostics.sort_by_key(|it| it.finding.place.file);
     outcome.elapsed = start.elapsed();
     // Dropping all facts takes time, and the process is about to end.
     std::mem::forget(db);
     outcome
+}
+
+/// The configuration as a file of the report.
+fn configuration_view(db: &dyn Db) -> SourceView {
+    let file = db.project().configuration(db);
+    SourceView {
+        path: file.path(db).to_owned(),
+        text: file.text(db).clone(),
+        encoding: Encoding::Utf8.as_str(),
+        dialect: "configuration".to_owned(),
+        entities: 0,
+        not_understood: 0,
+        made_of: None,
+        is_variant: false,
+        is_configuration: true,
+    }
 }
 
 /// Families of code for which no controller is configured, though an active rule asks for one.

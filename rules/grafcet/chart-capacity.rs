@@ -12,6 +12,7 @@ use crate::target::{ChartCapacity, Limit};
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let Some(capacity) = cx.target.chart_capacity() else { return };
     drawn(cx.program.charts(), &capacity, sink);
+    configured(cx, &capacity, sink);
     at_once(cx, &capacity, sink);
 }
 
@@ -40,6 +41,24 @@ fn drawn(charts: &[Chart<'_>], capacity: &ChartCapacity, sink: &mut Sink<'_, Sit
     }
 }
 
+/// What the configuration gives the charts, against what the controller has.
+fn configured(cx: &ProgramCx<'_>, capacity: &ChartCapacity, sink: &mut Sink<'_, Site>) {
+    if cx.program.charts().is_empty() {
+        return;
+    }
+    let configured = cx.settings.chart();
+    let values = [
+        (configured.active_steps, capacity.active_steps, "active steps"),
+        (configured.valid_transitions, capacity.valid_transitions, "valid transitions"),
+    ];
+    for (value, most, what) in values {
+        let Some(value) = value.filter(|it| *it.get_ref() > most.value) else { continue };
+        let of = cx.target.controller().map_or("a controller".to_owned(), |it| format!("a {it}"));
+        sink.report(cx.settings.site(&value), format!("{of} keeps {} {what} at most, not {value}", most.value))
+            .note(format!("the number is given in {}", most.source));
+    }
+}
+
 fn report(sink: &mut Sink<'_, Site>, what: &str, limit: Limit, all: Vec<Site>) {
     let (Some(beyond), Some(first)) = (all.get(limit.value as usize), all.first()) else { return };
     let count = all.len();
@@ -59,7 +78,11 @@ fn at_once(cx: &ProgramCx<'_>, capacity: &ChartCapacity, sink: &mut Sink<'_, Sit
     ];
     let counts: [fn(&Study<'_, '_>, &Part, u32) -> u32; 2] = [active_steps, valid_transitions];
     for ((what, configured, default, most, key), of) in limits.into_iter().zip(counts) {
-        let limit = configured.or(default.map(|it| it.value)).map_or(most.value, |it| it.min(most.value));
+        let limit = configured
+            .as_ref()
+            .map(|it| *it.get_ref())
+            .or(default.map(|it| it.value))
+            .map_or(most.value, |it| it.min(most.value));
         // Fewer that there are at all are never too many.
         let drawn = cx.studies().iter().map(|it| it.net.nodes.len().max(it.net.crossings.len())).sum::<usize>();
         if drawn <= limit as usize {
@@ -75,8 +98,8 @@ fn at_once(cx: &ProgramCx<'_>, capacity: &ChartCapacity, sink: &mut Sink<'_, Sit
         }
         if count.sum > most.value {
             finding.note(format!("no more can be configured, according to {}", most.source));
-        } else if configured.is_some() {
-            finding.note(format!("`{key}` of `[chart]` in the configuration says so"));
+        } else if let Some(configured) = &configured {
+            finding.related(cx.settings.site(configured), format!("`{key}` says so"));
         } else {
             // The application may configure more, up to what the controller has.
             finding.severity(Severity::Warning).note(format!(

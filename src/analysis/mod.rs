@@ -33,3 +33,17 @@ pub struct Site {
     /// Index into the anchors of the unit's model.
     pub anchor: u32,
 }
+
+impl Site {
+    /// Instead of a unit: the file of the configuration.
+    const CONFIGURATION: u32 = u32::MAX;
+
+    /// A key or value of the configuration, by its number among them.
+    pub fn configured(anchor: u32) -> Self {
+        Self { unit: Self::CONFIGURATION, anchor }
+    }
+
+    pub fn is_configured(self) -> bool {
+        self.unit == Self::CONFIGURATION
+    }
+}

@@ -26,6 +26,8 @@ pub struct SourceView {
     pub made_of: Option<MadeOf>,
     /// Other files of its folder define parts that it defines too, so that it was checked by itself.
     pub is_variant: bool,
+    /// The configuration, which is among the files when a finding names a place in it. It is no part of any program.
+    pub is_configuration: bool,
 }
 
 /// What the text of a binary file was made of.

@@ -49,7 +49,7 @@ impl Summary {
             untargeted: outcome.untargeted.clone(),
             ..Self::default()
         };
-        for file in &outcome.files {
+        for file in outcome.files.iter().filter(|it| !it.is_configuration) {
             it.files += 1;
             it.entities += file.entities;
             it.variants += usize::from(file.is_variant);

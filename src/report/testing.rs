@@ -29,6 +29,7 @@ pub(crate) fn view(path: &str, text: &str, encoding: &'static str) -> SourceView
         not_understood: 0,
         made_of: None,
         is_variant: false,
+        is_configuration: false,
     }
 }
 
