@@ -64,10 +64,10 @@ fn help_is_no_mistake() {
 /// A file of which nothing is read is named with its form, whether the form is the file's or that of all its units.
 #[test]
 fn what_is_not_read_is_named() {
-    let rung = "RUNG\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
+    let rung = "RUNG L1:\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
     let folder = folder(&[
         ("press.txt", "IL : PL7-2 - PRL\nLD I0,05\nIL : PL7-2 - POST\nLD I0,06\n"),
-        ("mixed.txt", &format!("LD : PL7-2 - POST\n{rung}ST : MAST - MAIN\n! %M1 := %M2;\n")),
+        ("mixed.txt", &format!("LD : PL7-2 - PRL\n{rung}ST : MAST - MAIN\n! %Q2.0 := %I1.0;\n")),
         ("plclint.toml", "[target]\ncontroller = 'TSX 17-20'"),
     ]);
     let ran = run(folder.path(), &["check", "--format", "concise"]);
