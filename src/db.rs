@@ -449,6 +449,7 @@ pub struct FilePlace {
 pub struct FileFinding {
     pub finding: Finding<FilePlace>,
     pub entity: String,
+    pub family: Option<Family>,
     pub suppressed: Option<String>,
 }
 
@@ -503,10 +504,8 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         }
         let table = symbol_table(db, program);
         if !table.is_empty() {
-            let is_of = |it: &Finding<FilePlace>| {
-                let unit = unit_at(layout, it.place.range.start());
-                unit.and_then(|it| unit_family(db, it)) == Some(program.family(db))
-            };
+            let is_of =
+                |it: &Finding<FilePlace>| family_at(db, layout, it.place.range.start()) == Some(program.family(db));
             found.iter_mut().filter(|it| is_of(it)).for_each(|it| it.message = table.annotate(&it.message));
         }
     }
@@ -527,7 +526,8 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         .map(|finding| {
             let line = lines.as_ref().map(|it| it.line_col(finding.place.range.start()).line);
             let suppressed = line.and_then(|it| suppressions.suppress(finding.rule, it)).map(str::to_owned);
-            FileFinding { entity: entity_at(db, layout, finding.place.range.start()), finding, suppressed }
+            let at = finding.place.range.start();
+            FileFinding { entity: entity_at(db, layout, at), family: family_at(db, layout, at), finding, suppressed }
         })
         .collect();
     let leftovers =
@@ -541,8 +541,9 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         let Some(mut finding) = finding.map(|range| Some(FilePlace { file, range })) else { continue };
         let Some(severity) = selection.severity(finding.rule, finding.severity) else { continue };
         finding.severity = severity;
-        let entity = entity_at(db, layout, finding.place.range.start());
-        findings.push(FileFinding { finding, entity, suppressed: None });
+        let at = finding.place.range.start();
+        let (entity, family) = (entity_at(db, layout, at), family_at(db, layout, at));
+        findings.push(FileFinding { finding, entity, family, suppressed: None });
     }
     findings.sort_by(|a, b| {
         let key =
@@ -565,7 +566,8 @@ pub fn configuration_findings(db: &dyn Db) -> Vec<FileFinding> {
             let Some(mut finding) = finding.clone().map(|site| places.of(site)) else { continue };
             finding.severity = severity;
             finding.message = symbol_table(db, program).annotate(&finding.message);
-            findings.push(FileFinding { finding, entity: "configuration".to_owned(), suppressed: None });
+            let (entity, family) = ("configuration".to_owned(), Some(program.family(db)));
+            findings.push(FileFinding { finding, entity, family, suppressed: None });
         }
     }
     let key = |it: &FileFinding| (it.finding.place.range.start(), it.finding.rule.code, it.finding.message.clone());
@@ -623,6 +625,10 @@ fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'db>> 
 
 fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
     unit_at(layout, at).map_or_else(String::new, |it| it.entity(db).to_string())
+}
+
+fn family_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> Option<Family> {
+    unit_at(layout, at).and_then(|it| unit_family(db, it))
 }
 
 /// Suppression comments of a file.
@@ -863,8 +869,8 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     for finding in found.into_iter().flatten() {
         let name = |place: FilePlace| Some(Location { file: *indices.get(&place.file)?, range: place.range });
         if let Some(it) = finding.finding.map(name) {
-            let (entity, suppressed) = (finding.entity, finding.suppressed);
-            outcome.diagnostics.push(Diagnostic { finding: it, entity, suppressed });
+            let (entity, family, suppressed) = (finding.entity, finding.family, finding.suppressed);
+            outcome.diagnostics.push(Diagnostic { finding: it, entity, family, suppressed });
         }
     }
     // Those of the configuration come last, and its path may stand anywhere.

@@ -43,6 +43,8 @@ pub struct Diagnostic {
     pub finding: Finding<Location>,
     /// The unit that holds the primary place, in the vendor's own addressing: `MAST - SR10`, `FC1`.
     pub entity: String,
+    /// Whose code holds it.
+    pub family: Option<Family>,
     /// Present when a comment or a baseline suppresses it; holds the reason given, which may be empty.
     pub suppressed: Option<String>,
 }

@@ -221,7 +221,7 @@ fn finding<'a>(positions: &Positions<'a>, diagnostic: &'a Diagnostic) -> Option<
         label: finding.label.as_deref(),
         related: finding.related.iter().filter_map(related).collect(),
         notes: &finding.notes,
-        help: finding.rule.help(),
+        help: finding.rule.help_for(diagnostic.family),
         sources: finding.rule.sources,
         fixes,
         suppressed: diagnostic.suppressed.as_deref().map(|reason| Suppressed { reason }),
