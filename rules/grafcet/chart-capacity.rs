@@ -24,7 +24,12 @@ fn drawn(charts: &[Chart<'_>], capacity: &ChartCapacity, sink: &mut Sink<'_, Sit
             is_counted && it.it.name.as_ref().is_none_or(|name| chart.step_named(name) == Some(*at))
         })
     });
-    report(sink, "steps", capacity.steps, steps.map(|it| it.1.site()).collect());
+    let steps: Vec<_> = steps.map(|it| it.1).collect();
+    report(sink, "steps", capacity.steps, steps.iter().map(|it| it.site()).collect());
+    if let Some(limit) = capacity.initial_steps {
+        let initial = steps.iter().filter(|it| it.it.kind == StepKind::Initial);
+        report(sink, "initial steps", limit, initial.map(|it| it.site()).collect());
+    }
     let transitions = || charts.iter().flat_map(|it| &it.transitions);
     report(sink, "transitions", capacity.transitions, transitions().map(|it| it.site()).collect());
     if let Some(limit) = capacity.and_convergences {
