@@ -3,6 +3,7 @@
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
 pub mod calls;
+pub mod capacity;
 pub mod channels;
 pub mod chart;
 pub mod conditions;
