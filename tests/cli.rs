@@ -64,10 +64,10 @@ fn help_is_no_mistake() {
 /// A file of which nothing is read is named with its form, whether the form is the file's or that of all its units.
 #[test]
 fn what_is_not_read_is_named() {
-    let rung = "RUNG\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
+    let rung = "RUNG L1:\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
     let folder = folder(&[
         ("press.txt", "IL : PL7-2 - PRL\nLD I0,05\nIL : PL7-2 - POST\nLD I0,06\n"),
-        ("mixed.txt", &format!("LD : PL7-2 - POST\n{rung}ST : MAST - MAIN\n! %M1 := %M2;\n")),
+        ("mixed.txt", &format!("LD : PL7-2 - PRL\n{rung}ST : MAST - MAIN\n! %Q2.0 := %I1.0;\n")),
         ("plclint.toml", "[target]\ncontroller = 'TSX 17-20'"),
     ]);
     let ran = run(folder.path(), &["check", "--format", "concise"]);
@@ -351,4 +351,53 @@ fn pictures_of_the_documentation_are_current() {
         count += 1;
     }
     assert_eq!(count, 3);
+}
+
+/// A value of the configuration is found in its file, by every format; files and lines of programs are counted without it.
+#[test]
+fn findings_stand_in_the_configuration() {
+    let config = "[target]\ncontroller = 'TSX 57-353'\n[[task]]\nname = 'MAST'\nperiod = '300ms'\nwatchdog = '700ms'\n";
+    let code = "(* heat *)\nST : MAST - MAIN\n! %M1 := %I1.0;\n! %Q2.0 := %M1;\n";
+    let files = [("a.st", code), ("plclint.toml", config), ("z/b.st", code), ("z/plclint.toml", config)];
+    let folder = folder(&files);
+    let arguments = |format| ["check", "--select", "P006", "--format", format, "a.st"];
+    let concise = run(folder.path(), &arguments("concise"));
+    assert_eq!(concise.code, Some(1));
+    let lines: Vec<&str> = concise.out.lines().collect();
+    assert_eq!(
+        lines[..2],
+        [
+            "plclint.toml:5:10: P006[task-period] error: the period of MAST is 300 ms, and may be 1 to 255 ms \
+             [configuration]",
+            "plclint.toml:6:12: P006[task-period] error: the watchdog of MAST is 700 ms, and may be 500 ms at most \
+             [configuration]",
+        ]
+    );
+    assert!(lines[2].starts_with("1 file, 1 program or block, 4 lines read"), "{}", concise.out);
+    let human = run(folder.path(), &arguments("human")).out;
+    for part in ["plclint.toml:5:10", "period = '300ms'", "a.st:2:1", "the task"] {
+        assert!(human.contains(part), "{part}: {human}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&run(folder.path(), &arguments("json")).out).expect("JSON");
+    let finding = &json["findings"][0];
+    assert_eq!((finding["path"].as_str(), finding["start"]["line"].as_u64()), (Some("plclint.toml"), Some(5)));
+    assert_eq!((finding["end"]["column"].as_u64(), finding["related"][0]["path"].as_str()), (Some(17), Some("a.st")));
+    assert_eq!(
+        (json["files"][1]["dialect"].as_str(), json["summary"]["files"].as_u64()),
+        (Some("configuration"), Some(1))
+    );
+    let sarif: serde_json::Value = serde_json::from_str(&run(folder.path(), &arguments("sarif")).out).expect("JSON");
+    let place = &sarif["runs"][0]["results"][0]["locations"][0]["physicalLocation"];
+    assert_eq!(place["artifactLocation"]["uri"], "plclint.toml");
+    assert_eq!(place["region"]["startLine"], 5);
+
+    // Each configuration of a run has its own findings, between those of the files in the order of paths.
+    let both = run(folder.path(), &["check", "--select", "P006", "--format", "concise", "a.st", "z"]).out;
+    let places: Vec<&str> = both.lines().filter_map(|it| it.split_once(": P006").map(|it| it.0)).collect();
+    assert_eq!(places, ["plclint.toml:5:10", "plclint.toml:6:12", "z/plclint.toml:5:10", "z/plclint.toml:6:12"]);
+    // What nobody has wrong is no file of the report.
+    let clean: serde_json::Value =
+        serde_json::from_str(&run(folder.path(), &["check", "--select", "W001", "--format", "json", "a.st"]).out)
+            .expect("JSON");
+    assert_eq!(clean["files"].as_array().map(Vec::len), Some(1));
 }

@@ -146,8 +146,9 @@ fn merge(mut outcomes: Vec<Outcome>) -> Outcome {
                 continue;
             }
             let name = |location: Location| place(location.file).map(|it| Location { file: it.0, ..location });
-            let (entity, suppressed) = (it.entity, it.suppressed);
-            merged.diagnostics.extend(it.finding.map(name).map(|finding| Diagnostic { finding, entity, suppressed }));
+            let (entity, family, suppressed) = (it.entity, it.family, it.suppressed);
+            let finding = it.finding.map(name);
+            merged.diagnostics.extend(finding.map(|finding| Diagnostic { finding, entity, family, suppressed }));
         }
         merged.unread.extend(outcome.unread);
         merged.active.extend(outcome.active);
