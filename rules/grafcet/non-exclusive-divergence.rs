@@ -2,7 +2,7 @@
 
 use crate::analysis::Site;
 use crate::analysis::reach::{Part, Study};
-use crate::analysis::satisfy::{Answer, Witness};
+use crate::analysis::conditions::{Answer, Witness};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {

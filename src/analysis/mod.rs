@@ -21,7 +21,6 @@ pub mod operands;
 pub mod processing;
 pub mod program;
 pub mod reach;
-pub mod satisfy;
 pub mod size;
 pub mod symbols;
 

@@ -1,7 +1,7 @@
 //! The situations that a chart can reach, by the rules of evolution (GRF:128-152, PL7:5123-5186).
 //!
 //! All transitions that can be crossed are crossed at once; the steps before them go off, those behind them go on, and a
-//! step that does both stays on. Receptivities are free, but for what [`satisfy`] excludes: which of those that are valid
+//! step that does both stays on. Receptivities are free, but for what [`conditions`] excludes: which of those that are valid
 //! together can be true together. Transitions that share no step and no object are independent: crossing them one after
 //! the other reaches what crossing them together reaches.
 //!
@@ -10,9 +10,9 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::chart::{Chart, FactReceptivity, Step, Transition};
+use super::conditions::{Answer, Objects, Space};
 use super::facts::{self, UnitFacts};
 use super::program::ProgramIndex;
-use super::satisfy::{Answer, Space};
 use crate::model::chart::{Graph, StepKind, StepName};
 use crate::model::entity::Family;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
@@ -239,7 +239,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     pub fn space(&self) -> Space<'_> {
-        Space { exprs: &self.exprs, objects: &self.objects, family: self.family }
+        Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family }
     }
 
     fn cross(&mut self, program: &ProgramIndex<'a>) {
