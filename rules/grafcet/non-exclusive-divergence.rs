@@ -1,8 +1,8 @@
 //! G001: alternative branches of a chart that can be taken together.
 
 use crate::analysis::Site;
-use crate::analysis::reach::{Part, Study};
 use crate::analysis::conditions::{Answer, Witness};
+use crate::analysis::reach::{Part, Study};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {

@@ -9,6 +9,7 @@ pub mod conditions;
 pub mod connectors;
 pub mod cost;
 pub mod counts;
+pub mod decided;
 pub mod drives;
 pub mod edges;
 pub mod facts;

@@ -239,7 +239,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     pub fn space(&self) -> Space<'_> {
-        Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family }
+        Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family, known: &[] }
     }
 
     fn cross(&mut self, program: &ProgramIndex<'a>) {

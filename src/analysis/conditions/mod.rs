@@ -29,6 +29,8 @@ pub struct Space<'a> {
     pub exprs: &'a Exprs,
     pub objects: Objects<'a>,
     pub family: Family,
+    /// Terms of which the value is known.
+    pub known: &'a [(ExprId, i64)],
 }
 
 /// Objects by [`ObjectId`]: those of a unit, or of several.
@@ -109,7 +111,7 @@ impl<'a> Space<'a> {
             language if language.is_pl7_2() => Family::Pl72,
             _ => Family::Pl7,
         };
-        Self { exprs: &model.exprs, objects: Objects::Unit(&model.objects), family }
+        Self { exprs: &model.exprs, objects: Objects::Unit(&model.objects), family, known: &[] }
     }
 
     /// Whether all conditions can have the values wanted of them at one moment, and what does it.
@@ -154,7 +156,22 @@ impl<'a> Space<'a> {
 
     /// Whether the first condition surely never holds without the second.
     pub fn implies(&self, a: ExprId, b: ExprId) -> bool {
-        a == b || self.decide(&Question { wanted: &[(a, true), (b, false)], never: &[] }) == Verdict::Never
+        if a == b || a == Exprs::FALSE || b == Exprs::TRUE {
+            return true;
+        }
+        // What is free of a condition is false while it holds.
+        let (mut given, mut parts) = (Vec::new(), Vec::new());
+        spread(self.exprs, a, &mut given);
+        spread(self.exprs, b, &mut parts);
+        let is_free = |part: &ExprId| {
+            let mut all = given.clone();
+            all.push(*part);
+            *part != Exprs::TRUE && !given.contains(part) && self.by_form(&mut all) == Some(Verdict::Possible)
+        };
+        /// So many parts are looked at.
+        const FEW: usize = 4;
+        !parts.iter().take(FEW).any(is_free)
+            && self.decide(&Question { wanted: &[(a, true), (b, false)], never: &[] }) == Verdict::Never
     }
 
     /// Whether two conditions surely hold at the same moments.
@@ -274,7 +291,7 @@ impl<'a> Space<'a> {
     /// The constant as the term has it that it is compared with: `16#FFFF` is -1 in a word. `None` where it depends on the
     /// width of the comparison, which is not known, what it is.
     fn in_width(&self, op: Comparison, term: ExprId, constant: Constant) -> Option<Constant> {
-        let (Constant::Int(value), Some((lowest, highest))) = (constant, self.domain(term)) else {
+        let (Constant::Int(value), Some((lowest, highest))) = (constant, self.range_of(term)) else {
             return Some(constant);
         };
         let all = highest - lowest + 1;
@@ -330,8 +347,14 @@ impl<'a> Space<'a> {
         }
     }
 
-    /// The values that a whole number can have.
+    /// The values that a whole number can have here.
     fn domain(&self, term: ExprId) -> Option<(i64, i64)> {
+        let known = self.known.iter().find(|it| it.0 == term);
+        known.map(|it| (it.1, it.1)).or_else(|| self.range_of(term))
+    }
+
+    /// The values that a whole number can have by its type.
+    fn range_of(&self, term: ExprId) -> Option<(i64, i64)> {
         let (object, _) = self.read_of(term)?;
         Some(match (object.class, object.ty) {
             (Class::StepTime, Type::Word) => (STEP_TIMES.first.into(), STEP_TIMES.last.into()),

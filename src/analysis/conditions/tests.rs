@@ -117,7 +117,7 @@ proptest! {
         let objects: Vec<&Object> = objects.iter().collect();
         let mut exprs = Exprs::default();
         let [a, b, c] = [a, b, c].map(|it| it.build(&mut exprs));
-        let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7 };
+        let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7, known: &[] };
         for never in [vec![], vec![[b, c]], vec![[a, b], [b, c]]] {
             for wanted in [vec![(a, true)], vec![(a, false), (c, true)]] {
                 let question = Question { wanted: &wanted, never: &never };
@@ -138,7 +138,7 @@ proptest! {
         let objects: Vec<&Object> = objects.iter().collect();
         let mut exprs = Exprs::default();
         let wanted = [(a.build(&mut exprs), true), (b.build(&mut exprs), true)];
-        let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7 };
+        let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7, known: &[] };
         let possible = State::all().any(|it| a.holds(&it) && b.holds(&it));
         let verdict = if possible { Verdict::Possible } else { Verdict::Never };
         prop_assert_eq!(space.together(&wanted.map(|it| it.0)), verdict, "with what the form tells");
@@ -184,7 +184,7 @@ fn answer(first: &str, second: &str) -> (Answer, Vec<String>) {
         })
         .collect();
     let objects: Vec<&Object> = model.objects.iter().collect();
-    let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7 };
+    let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7, known: &[] };
     let answer = space.solve(&wanted);
     let given = match &answer {
         Answer::Possible(witness) => witness.given.iter().map(|it| space.describe(it)).collect(),
@@ -204,6 +204,10 @@ fn receptivities() {
     never("%X3.T >= 10000", "%I1.0");
     never("%MF2 > 1.5", "%MF2 <= 1.5");
     never("%MW1 > %MW2", "%MW2 > %MW1");
+    never("1 = 2", "%I1.0");
+    never("%MW1 <> %MW1", "%I1.0");
+    never("%MW0 = 16#FFFF", "%MW0 >= 0");
+    never("%MW0 > 32767", "%I1.0");
     let possible = |a: &str, b: &str, assumed: bool, expected: &[&str]| {
         let (answer, given) = answer(a, b);
         let Answer::Possible(witness) = answer else { panic!("{a} / {b}") };
@@ -215,6 +219,8 @@ fn receptivities() {
     };
     possible("%I1.0", "%I1.1", false, &["`%I1.0` = 1", "`%I1.1` = 1"]);
     possible("%I1.0 OR %I1.1", "%I1.1 AND NOT %I1.0", false, &["`%I1.0` = 0", "`%I1.1` = 1"]);
+    possible("%MW0 = 16#FFFF", "%M1", false, &["`%MW0` = -1", "`%M1` = 1"]);
+    possible("%MW0 > 16#8000", "%M1", true, &["`%MW0` > 32768", "`%M1` = 1"]);
     possible("%MW5 >= 15", "%MW5 <= 20", false, &["`%MW5` in 15..20"]);
     possible("%MW5 > 15", "%M1", false, &["`%MW5` >= 16", "`%M1` = 1"]);
     possible("%X3.T > 50", "%M1", false, &["`%X3.T` >= 51", "`%M1` = 1"]);
@@ -226,7 +232,7 @@ fn receptivities() {
 
 /// Expressions about objects of which nothing is known.
 fn space(exprs: &Exprs) -> Space<'_> {
-    Space { exprs, objects: Objects::Unit(&[]), family: Family::Step7 }
+    Space { exprs, objects: Objects::Unit(&[]), family: Family::Step7, known: &[] }
 }
 
 fn bit(exprs: &mut Exprs, n: u32) -> ExprId {
@@ -334,4 +340,34 @@ fn constants_are_recognised() {
     let always = exprs.or(a, inner);
     assert_eq!(space(&exprs).constant(Exprs::TRUE, always), Some(true));
     assert_eq!(space(&exprs).constant(Exprs::TRUE, inner), None);
+}
+
+/// A word and its bit are one memory as long as nothing wrote one of them without the other.
+#[test]
+fn versions_of_words_and_their_bits() {
+    let objects = objects();
+    let mut exprs = Exprs::default();
+    let (zero, word) = (exprs.int(0), exprs.read(ObjectId(4), 3));
+    let is_zero = exprs.compare(Comparison::Eq, word, zero);
+    let (same, later) = (exprs.read(ObjectId(6), 3), exprs.read(ObjectId(6), 5));
+    let space = Space { exprs: &exprs, objects: Objects::Unit(&objects), family: Family::Pl7, known: &[] };
+    assert!(space.exclusive(is_zero, same));
+    assert!(!space.exclusive(is_zero, later));
+    let space = Space { known: &[(word, 4)], ..space };
+    assert_eq!(space.constant(Exprs::TRUE, is_zero), Some(false));
+    assert_eq!(space.constant(Exprs::TRUE, same), None, "bits of a word that no condition compares");
+}
+
+#[test]
+fn implied_and_equivalent_conditions() {
+    let mut exprs = Exprs::default();
+    let (a, b, term) = (bit(&mut exprs, 0), bit(&mut exprs, 1), bit(&mut exprs, 2));
+    let (five, nine) = (exprs.int(5), exprs.int(9));
+    let (over_five, over_nine) = (exprs.compare(Comparison::Gt, term, five), exprs.compare(Comparison::Gt, term, nine));
+    let (both, swapped) = (exprs.and(a, b), exprs.and(b, a));
+    let space = space(&exprs);
+    assert!(space.implies(over_nine, over_five) && !space.implies(over_five, over_nine));
+    assert!(space.equivalent(both, swapped) && !space.equivalent(both, a));
+    assert_eq!(space.constant(over_nine, over_five), Some(true));
+    assert_eq!(space.constant(Exprs::FALSE, a), Some(false));
 }

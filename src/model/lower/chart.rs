@@ -19,7 +19,7 @@ use crate::model::chart::{
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{self, Class, Object};
-use crate::model::unit::{Mode, StatementKind};
+use crate::model::unit::{Fork, Mode, StatementKind};
 use crate::syntax::pl7::ast::{Rung, Sentence, Stmt};
 use crate::syntax::pl7::chart::ast;
 use crate::syntax::{AstNode as _, Language, SyntaxKind, SyntaxNode, SyntaxToken};
@@ -357,7 +357,7 @@ impl<'t> Lowering<'t> {
             if let Receptivity::Value(condition) = receptivity {
                 let rung = || tree.rungs().last().map(Rung::range);
                 let range = tree.sentences().last().map(Sentence::range).or_else(rung).unwrap_or(tree.range());
-                pl7.b.statement(StatementKind::Branch { condition }, range);
+                pl7.b.statement(StatementKind::Branch { condition, of: Fork::Receptivity }, range);
             }
             if let Some(transition) = self.chart.transitions.get_mut(at) {
                 transition.receptivity = receptivity;
