@@ -223,7 +223,7 @@ impl ChartFacts {
 }
 
 /// Task and section that a unit's chart belongs to.
-fn section(entity: &Entity) -> Option<(Task, Option<&SmolStr>)> {
+pub fn section(entity: &Entity) -> Option<(Task, Option<&SmolStr>)> {
     match entity {
         Entity::Pl7 { task, section, .. } => Some((*task, section.as_ref())),
         _ => None,

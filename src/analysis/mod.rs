@@ -5,6 +5,7 @@
 pub mod calls;
 pub mod channels;
 pub mod chart;
+pub mod coactive;
 pub mod conditions;
 pub mod connectors;
 pub mod cost;

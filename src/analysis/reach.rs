@@ -8,13 +8,14 @@
 //! Charts that nothing connects are looked at apart. What is too large is said to be not decided.
 
 use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
 
 use super::chart::{Chart, FactReceptivity, Step, Transition};
 use super::conditions::{Answer, Objects, Space};
 use super::facts::{self, UnitFacts};
 use super::program::ProgramIndex;
 use crate::model::chart::{Graph, StepKind, StepName};
-use crate::model::entity::Family;
+use crate::model::entity::{Family, Task};
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::Mode;
@@ -138,6 +139,25 @@ impl<'p, 'a> Study<'p, 'a> {
     }
 }
 
+impl Part {
+    /// The first situation found, of those from the initial one on, in which one step of each list is active, two different
+    /// ones. Branches of one step are not taken together in it.
+    pub fn active_together(&self, a: &[Node], b: &[Node]) -> Option<(u32, [Node; 2])> {
+        let places = |nodes: &[Node]| -> Vec<(usize, Node)> {
+            nodes.iter().filter_map(|it| Some((self.component.nodes.binary_search(it).ok()?, *it))).collect()
+        };
+        let (a, b) = (places(a), places(b));
+        if a.is_empty() || b.is_empty() {
+            return None;
+        }
+        (0..).zip(&self.own.situations).find_map(|(at, situation)| {
+            let mut active = a.iter().filter(|it| has(situation, it.0));
+            let both = active.find_map(|x| Some((x, b.iter().find(|y| y.0 != x.0 && has(situation, y.0))?)));
+            both.map(|(x, y)| (at, [x.1, y.1]))
+        })
+    }
+}
+
 /// A set of steps of a component, by their places in it.
 pub type Situation = Box<[u64]>;
 
@@ -206,6 +226,18 @@ impl<'p, 'a> Net<'p, 'a> {
     fn node(&self, chart: usize, step: u32) -> Node {
         let before: usize = self.charts[..chart].iter().map(|it| it.steps.len()).sum();
         u32::try_from(before).unwrap_or(u32::MAX).saturating_add(step)
+    }
+
+    /// The steps of some names in a graph of a section, where the net has them.
+    pub fn named<'s>(
+        &self,
+        section: (Task, Option<&SmolStr>),
+        graph: Graph,
+        names: impl Iterator<Item = &'s StepName>,
+    ) -> Vec<Node> {
+        let is_it = |it: &&Chart<'_>| (it.task, it.section) == section && it.graph == graph;
+        let Some((at, chart)) = self.charts.iter().enumerate().find(|it| is_it(it.1)) else { return Vec::new() };
+        names.filter_map(|it| Some(self.node(at, chart.step_named(it)?))).collect()
     }
 
     pub fn step(&self, node: Node) -> &'p Step<'a> {
