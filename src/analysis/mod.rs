@@ -20,6 +20,7 @@ pub mod gaps;
 pub mod known;
 pub mod modules;
 pub mod operands;
+pub mod priority;
 pub mod processing;
 pub mod program;
 pub mod reach;

@@ -41,7 +41,7 @@ pub enum Objects<'a> {
 }
 
 impl<'a> Objects<'a> {
-    fn get(self, id: ObjectId) -> Option<&'a Object> {
+    pub fn get(self, id: ObjectId) -> Option<&'a Object> {
         match self {
             Self::Unit(objects) => objects.get(id.0 as usize),
             Self::Units(objects) => objects.get(id.0 as usize).copied(),
