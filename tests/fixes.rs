@@ -108,9 +108,8 @@ fn priority_in_instruction_list() {
 
 #[test]
 fn priority_in_ladder() {
-    let with = |contacts: &str, rest: u32| {
-        format!("RUNG\nOPEN_CONTACT(%I1.1),{contacts},H_LINK({rest}),HASH_COIL;\nEND_RUNG")
-    };
+    let with =
+        |contacts: &str, rest: u32| format!("RUNG\nOPEN_CONTACT(%I1.1),{contacts},H_LINK({rest}),HASH_COIL;\nEND_RUNG");
     assert_eq!(with_priority(&["%I1.0", RUNG]), [with("CLOSED_CONTACT(%I1.0)", 8)]);
     let third = RUNG.replace("%I1.1", "%I1.2");
     assert_eq!(
