@@ -26,17 +26,29 @@ struct Text {
     name: &'static str,
     text: LazyCell<String, Box<dyn FnOnce() -> String>>,
     detected: Detected,
+    make: fn(usize, u64) -> String,
+    seed: u64,
+    /// A controller holds no program that is larger.
+    largest: usize,
+}
+
+impl Text {
+    /// The text as programs that can exist: of more bytes than one controller holds, several.
+    fn programs(&self, bytes: usize) -> Vec<String> {
+        let number = bytes.div_ceil(self.largest).max(1);
+        (self.seed..).take(number).map(|seed| (self.make)(bytes / number, seed)).collect()
+    }
 }
 
 fn texts(bytes: usize) -> [Text; 2] {
     let detected = Input::from_text("bench.txt", &generator::pl7(10_000, 7), Dialect::Pl7).detected;
-    let lazy = |make: fn(usize, u64) -> String, seed| {
-        let make: Box<dyn FnOnce() -> String> = Box::new(move || make(bytes, seed));
-        LazyCell::new(make)
+    let text = |name, make: fn(usize, u64) -> String, seed, detected, largest| {
+        let lazy: Box<dyn FnOnce() -> String> = Box::new(move || make(bytes, seed));
+        Text { name, text: LazyCell::new(lazy), detected, make, seed, largest }
     };
     [
-        Text { name: "step7", text: lazy(generator::step7, 42), detected: Detected::Step7 },
-        Text { name: "pl7", text: lazy(generator::pl7, 7), detected },
+        text("step7", generator::step7, 42, Detected::Step7, usize::MAX),
+        text("pl7", generator::pl7, 7, detected, 1_000_000),
     ]
 }
 
@@ -45,7 +57,7 @@ fn parse(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("lex and parse");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     for (size, bytes) in SIZES {
-        for Text { name, text, detected } in texts(bytes) {
+        for Text { name, text, detected, .. } in texts(bytes) {
             group.throughput(Throughput::Bytes(bytes as u64));
             group.bench_function(BenchmarkId::new(name, size), |bencher| {
                 let text = text.as_str();
@@ -64,7 +76,7 @@ fn parse(criterion: &mut Criterion) {
 fn split(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("split");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
-    for Text { name, text, detected } in texts(10_000_000) {
+    for Text { name, text, detected, .. } in texts(10_000_000) {
         group.throughput(Throughput::Bytes(10_000_000));
         group.bench_function(BenchmarkId::new(name, "10 MB"), |bencher| {
             let text = text.as_str();
@@ -80,14 +92,18 @@ fn check(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("check, one thread");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     for (size, bytes) in SIZES {
-        for Text { name, text, detected } in texts(bytes) {
+        for it in texts(bytes) {
             group.throughput(Throughput::Bytes(bytes as u64));
-            group.bench_function(BenchmarkId::new(name, size), |bencher| {
-                let mut input = Input::from_text("bench.awl", "", Dialect::Step7);
-                input.source.text = text.as_str().into();
-                input.detected = detected;
+            group.bench_function(BenchmarkId::new(it.name, size), |bencher| {
+                let input = |(number, text): (usize, String)| {
+                    let mut input = Input::from_text(&format!("{number}/bench.txt"), "", Dialect::Step7);
+                    input.source.text = text.into();
+                    input.detected = it.detected;
+                    input
+                };
+                let inputs: Vec<Input> = it.programs(bytes).into_iter().enumerate().map(input).collect();
                 bencher.iter_batched(
-                    || vec![input.clone()],
+                    || inputs.clone(),
                     |inputs| pool.install(|| db::check(inputs, Settings::default()).diagnostics.len()),
                     BatchSize::PerIteration,
                 );
@@ -126,7 +142,7 @@ fn charts(criterion: &mut Criterion) {
 /// One network of a 1 MB file is edited; all findings of the file are asked for again.
 fn edit(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("edit to findings");
-    for Text { name, text, detected } in texts(1_000_000) {
+    for Text { name, text, detected, .. } in texts(1_000_000) {
         group.bench_function(BenchmarkId::new(name, "1 MB file"), |bencher| {
             let text = text.as_str();
             let (from, others) = match name {
@@ -159,10 +175,13 @@ fn main() {
     // Writes the generated programs instead, to time the command itself on them.
     if let Some(folder) = std::env::var_os("PLCLINT_BENCH_WRITE") {
         for (size, bytes) in SIZES {
-            for Text { name, text, .. } in texts(bytes) {
-                let extension = if name == "step7" { "awl" } else { "st" };
-                let file = std::path::Path::new(&folder).join(format!("{}.{extension}", size.replace(' ', "")));
-                std::fs::write(file, text.as_str()).expect("the folder can be written to");
+            for it in texts(bytes) {
+                for (number, program) in it.programs(bytes).into_iter().enumerate() {
+                    let folder = std::path::Path::new(&folder).join(size.replace(' ', "")).join(it.name);
+                    let folder = folder.join(number.to_string());
+                    std::fs::create_dir_all(&folder).expect("the folder can be written to");
+                    std::fs::write(folder.join("program.txt"), program).expect("the folder can be written to");
+                }
             }
         }
         for (name, text) in chart_texts() {

@@ -1,5 +1,7 @@
 //! E009: the memory bit of an edge that something else changes.
 
+use std::collections::BTreeSet;
+
 use crate::analysis::Site;
 use crate::analysis::drives;
 use crate::analysis::program::GlobalUse;
@@ -22,14 +24,13 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     }
     // Memory of a block's own: nobody else has a name for it.
     for (unit, facts) in (0..).zip(&cx.program.units) {
-        for (object, fact) in (0..).zip(&facts.objects) {
-            if !matches!(fact.object.class, Class::LocalName | Class::LocalData | Class::InstanceData) {
-                continue;
-            }
-            let mut own = facts.uses.iter().filter(|it| it.object == object).peekable();
-            if fact.object.is_fixed() && own.peek().is_some() {
-                let uses = own.map(|it| GlobalUse { unit, mode: it.mode, it }).collect();
-                judge(cx, &fact.object, uses, sink);
+        let edges = facts.uses.iter().filter(|it| it.mode == Mode::EdgeMemory);
+        for object in edges.map(|it| it.object).collect::<BTreeSet<_>>() {
+            let Some(fact) = facts.objects.get(object as usize) else { continue };
+            let is_own = matches!(fact.object.class, Class::LocalName | Class::LocalData | Class::InstanceData);
+            if is_own && fact.object.is_fixed() {
+                let own = facts.uses.iter().filter(|it| it.object == object);
+                judge(cx, &fact.object, own.map(|it| GlobalUse { unit, mode: it.mode, it }).collect(), sink);
             }
         }
     }

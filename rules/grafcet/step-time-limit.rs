@@ -10,6 +10,9 @@ use crate::syntax::{AstNode as _, SyntaxKind, SyntaxNode};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let Some((times, unit)) = cx.target.step_times() else { return };
+    if !cx.model.objects.iter().any(step_times::is_step_time) {
+        return;
+    }
     let (first, last) = (i64::from(times.first), i64::from(times.last));
     let decided = |it: &TimeCheck| it.op.decided(first, last, it.constant);
     let comparisons = cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast);

@@ -35,8 +35,16 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         _ => return,
     };
     // Most units hold no long comment: their tokens need no look.
-    let is_long = |piece: &str| piece.find("(*").is_some_and(|at| piece.len() - at > limit.value as usize);
-    if !cx.text.split("*)").any(is_long) {
+    let text = cx.text.as_bytes();
+    let ends = memchr::memmem::find_iter(text, "*)").chain([text.len()]);
+    let starts = memchr::memmem::Finder::new("(*");
+    let mut from = 0;
+    let is_long = |end: usize| {
+        let piece = text.get(std::mem::replace(&mut from, end)..end).unwrap_or_default();
+        piece.len() > limit.value as usize
+            && starts.find(piece).is_some_and(|at| piece.len() - at > limit.value as usize)
+    };
+    if !ends.into_iter().any(is_long) {
         return;
     }
     let is_item = |range: TextRange| cx.model.remarks.iter().any(|it| it.range == range);

@@ -7,7 +7,7 @@ use crate::target::{Counted, CountedBy};
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let Some(most) = cx.target.all_timers() else { return };
     // A number that is too high by itself has a rule of its own.
-    let highest = |what: Counted| counts::highest(cx.program, cx.target, what);
+    let highest = |what: Counted| counts::highest(cx.numbers(), cx.target, what);
     let (Some((timer, last)), Some((old, last_old))) = (highest(Counted::Timers), highest(Counted::OldTimers)) else {
         return;
     };

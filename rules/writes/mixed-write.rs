@@ -10,7 +10,7 @@ use crate::model::unit::Mode;
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in (0..).zip(&cx.program.objects) {
         let is_stored = |it: Mode| matches!(it, Mode::Set | Mode::Reset);
-        if !uses.has_mode(is_stored) {
+        if !uses.has_mode(is_stored) || !uses.has_mode(Mode::assigns) && cx.neighbours(at).is_empty() {
             continue;
         }
         let is_bit = uses.object.ty == Type::Bool || uses.object.class == Class::Symbol;

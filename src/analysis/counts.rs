@@ -52,6 +52,23 @@ pub fn number(family: Family, object: &Object) -> Option<(Counted, u32)> {
     })
 }
 
+/// An object with what it is counted as and the highest number that it takes.
+#[derive(Debug, Clone, Copy)]
+pub struct Numbered<'a> {
+    pub uses: &'a ObjectUses<'a>,
+    pub what: Counted,
+    pub last: u32,
+}
+
+/// The objects of a program that are counted, in the order of their addresses.
+pub fn numbers<'a>(program: &'a ProgramIndex<'a>) -> Vec<Numbered<'a>> {
+    let number = |uses: &'a ObjectUses<'a>| {
+        let (what, last) = number(program.family, uses.object)?;
+        Some(Numbered { uses, what, last })
+    };
+    program.objects.iter().filter_map(number).collect()
+}
+
 /// The counts of a target, each looked up once.
 struct Ends<'t> {
     target: &'t Target,
@@ -81,42 +98,37 @@ pub struct Beyond<'a> {
 
 /// The objects of a program that lie beyond what its controller or its configuration has: each bit, word and step, by
 /// address.
-pub fn beyond<'a>(program: &'a ProgramIndex<'a>, target: &Target) -> Vec<Beyond<'a>> {
+pub fn beyond<'a>(numbers: &[Numbered<'a>], target: &Target) -> Vec<Beyond<'a>> {
     let mut ends = Ends::new(target);
     let mut found = Vec::new();
-    for it in &program.objects {
-        let Some((what, last)) = number(program.family, it.object).filter(|it| !it.0.is_block()) else { continue };
+    for &Numbered { uses, what, last } in numbers.iter().filter(|it| !it.what.is_block()) {
         if let Some(count) = ends.passed_by(what, last) {
-            found.push(Beyond { objects: vec![it], what, count });
+            found.push(Beyond { objects: vec![uses], what, count });
         }
     }
     found
 }
 
 /// The same of timers, counters and other function blocks: each block with all its items.
-pub fn beyond_blocks<'a>(program: &'a ProgramIndex<'a>, target: &Target) -> Vec<Beyond<'a>> {
+pub fn beyond_blocks<'a>(numbers: &[Numbered<'a>], target: &Target) -> Vec<Beyond<'a>> {
     let mut ends = Ends::new(target);
     let mut found: Vec<(u32, Beyond<'a>)> = Vec::new();
     // Items of one block stand together, for objects are in the order of their addresses.
-    for it in &program.objects {
-        let Some((what, last)) = number(program.family, it.object).filter(|it| it.0.is_block()) else { continue };
+    for &Numbered { uses, what, last } in numbers.iter().filter(|it| it.what.is_block()) {
         let Some(count) = ends.passed_by(what, last) else { continue };
         match found.last_mut().filter(|(number, before)| *number == last && before.what == what) {
-            Some((_, before)) => before.objects.push(it),
-            None => found.push((last, Beyond { objects: vec![it], what, count })),
+            Some((_, before)) => before.objects.push(uses),
+            None => found.push((last, Beyond { objects: vec![uses], what, count })),
         }
     }
     found.into_iter().map(|it| it.1).collect()
 }
 
 /// The object with the highest number of a kind that is not beyond its count, with that number.
-pub fn highest<'a>(program: &'a ProgramIndex<'a>, target: &Target, what: Counted) -> Option<(&'a ObjectUses<'a>, u32)> {
+pub fn highest<'a>(numbers: &[Numbered<'a>], target: &Target, what: Counted) -> Option<(&'a ObjectUses<'a>, u32)> {
     let count = target.count(what)?;
-    let numbers = program.objects.iter().filter_map(|it| {
-        let (of, last) = number(program.family, it.object)?;
-        (of == what && last < count.value).then_some((it, last))
-    });
-    numbers.max_by_key(|it| it.1)
+    let existing = numbers.iter().filter(|it| it.what == what && it.last < count.value);
+    existing.max_by_key(|it| it.last).map(|it| (it.uses, it.last))
 }
 
 impl Beyond<'_> {

@@ -52,6 +52,9 @@ pub fn conflict<'a>(
 ) -> Option<(GlobalUse<'a>, Vec<GlobalUse<'a>>)> {
     /// Of more driving places of one object, only so many are compared.
     const MAX_COMPARED: usize = 256;
+    if uses.len() < 2 {
+        return None;
+    }
     let uses: Vec<GlobalUse<'a>> = uses
         .iter()
         .filter(|it| !program.is_startup(it.unit) && (!it.it.own || it.mode == Mode::Set))

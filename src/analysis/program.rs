@@ -82,6 +82,7 @@ impl GlobalUse<'_> {
 struct Modes(u16);
 
 impl Modes {
+    /// By the number of their bit.
     const ALL: [Mode; 13] = [
         Mode::Read,
         Mode::Rising,
@@ -98,9 +99,22 @@ impl Modes {
         Mode::Output,
     ];
 
-    fn bit(mode: Mode) -> u16 {
-        let is_same = |it: &Mode| *it == mode || matches!((it, mode), (Mode::Drive(_), Mode::Drive(_)));
-        Self::ALL.iter().position(is_same).map_or(0, |it| 1 << it)
+    const fn bit(mode: Mode) -> u16 {
+        1 << match mode {
+            Mode::Read => 0,
+            Mode::Rising => 1,
+            Mode::Falling => 2,
+            Mode::Assign => 3,
+            Mode::AssignNot => 4,
+            Mode::Set => 5,
+            Mode::Reset => 6,
+            Mode::Store => 7,
+            Mode::Write => 8,
+            Mode::EdgeMemory => 9,
+            Mode::Drive(_) => 10,
+            Mode::InOut => 11,
+            Mode::Output => 12,
+        }
     }
 
     fn insert(&mut self, mode: Mode) {
@@ -109,8 +123,14 @@ impl Modes {
 
     /// Whether one of the modes may be wanted; which pin is driven is not known here.
     fn may_have(self, wanted: impl Fn(Mode) -> bool) -> bool {
-        let is_wanted = |it: &Mode| matches!(it, Mode::Drive(_)) || wanted(*it);
-        Self::ALL.iter().any(|it| self.0 & Self::bit(*it) != 0 && is_wanted(it))
+        let mut rest = self.0;
+        while let Some(&mode) = Self::ALL.get(rest.trailing_zeros() as usize) {
+            if matches!(mode, Mode::Drive(_)) || wanted(mode) {
+                return true;
+            }
+            rest &= rest - 1;
+        }
+        false
     }
 }
 
@@ -920,13 +940,16 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
         objects.iter().map(|it| &it.object.footprint.area).collect::<FxHashSet<_>>().into_iter().collect();
     areas.sort_unstable();
     let ranks: FxHashMap<&Area, u32> = areas.into_iter().zip(0..).collect();
-    objects.sort_by_cached_key(|it| {
+    let key = |(at, it): (u32, &ObjectUses<'_>)| {
         let place = &it.object.footprint;
         let rank = ranks.get(&place.area).copied().unwrap_or(u32::MAX);
         // Those of one place stay in the order in which the program comes across them.
-        u128::from(rank) << 64 | u128::from(place.start) << 32 | u128::from(u32::MAX - place.bits)
-    });
-    objects
+        [rank, place.start, u32::MAX - place.bits, at].into_iter().fold(0, |key, it| key << 32 | u128::from(it))
+    };
+    let mut keys: Vec<u128> = (0..).zip(&objects).map(key).collect();
+    keys.sort_unstable();
+    let mut objects: Vec<Option<ObjectUses<'a>>> = objects.into_iter().map(Some).collect();
+    keys.into_iter().filter_map(|it| objects.get_mut((it & u128::from(u32::MAX)) as usize)?.take()).collect()
 }
 
 #[cfg(test)]

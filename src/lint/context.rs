@@ -3,10 +3,10 @@
 use std::cell::OnceCell;
 
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
 
 use super::settings::Settings;
 use super::suppress::Leftover;
+use crate::analysis::counts::{self, Numbered};
 use crate::analysis::program::ProgramIndex;
 use crate::analysis::reach::Study;
 use crate::model::UnitModel;
@@ -126,14 +126,21 @@ pub struct ProgramCx<'a> {
     pub settings: &'a Settings,
     pub target: &'a Target,
     overlaps: OnceCell<Vec<(u32, u32)>>,
-    neighbours: OnceCell<FxHashMap<u32, Vec<u32>>>,
+    neighbours: OnceCell<Neighbours>,
+    numbers: OnceCell<Vec<Numbered<'a>>>,
     studies: OnceCell<Vec<Study<'a, 'a>>>,
 }
 
 impl<'a> ProgramCx<'a> {
     pub(crate) fn new(program: &'a ProgramIndex<'a>, settings: &'a Settings, target: &'a Target) -> Self {
-        let (overlaps, neighbours, studies) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Self { program, settings, target, overlaps, neighbours, studies }
+        let (overlaps, neighbours) = (OnceCell::new(), OnceCell::new());
+        let (numbers, studies) = (OnceCell::new(), OnceCell::new());
+        Self { program, settings, target, overlaps, neighbours, numbers, studies }
+    }
+
+    /// The objects that are counted, each with its number.
+    pub fn numbers(&self) -> &[Numbered<'a>] {
+        self.numbers.get_or_init(|| counts::numbers(self.program))
     }
 
     /// The charts of the program with what they reach, made once for all rules.
@@ -148,15 +155,44 @@ impl<'a> ProgramCx<'a> {
 
     /// Other objects that share memory with an object, all by index.
     pub fn neighbours(&self, object: u32) -> &[u32] {
-        let neighbours = self.neighbours.get_or_init(|| {
-            let mut neighbours: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
-            for &(a, b) in self.overlaps() {
-                neighbours.entry(a).or_default().push(b);
-                neighbours.entry(b).or_default().push(a);
+        self.neighbours.get_or_init(|| Neighbours::new(self.program.objects.len(), self.overlaps())).of(object)
+    }
+}
+
+/// Pairs of numbers, looked up by either of both.
+struct Neighbours {
+    /// Where those of each number start, and where those of the last end.
+    starts: Box<[u32]>,
+    all: Box<[u32]>,
+}
+
+impl Neighbours {
+    fn new(numbers: usize, pairs: &[(u32, u32)]) -> Self {
+        let mut starts = vec![0; numbers + 1];
+        for &(a, b) in pairs {
+            starts[a as usize] += 1;
+            starts[b as usize] += 1;
+        }
+        let mut end = 0;
+        for it in &mut starts {
+            end += *it;
+            *it = end;
+        }
+        let mut all = vec![0; pairs.len() * 2];
+        for &(a, b) in pairs.iter().rev() {
+            for (it, other) in [(b, a), (a, b)] {
+                let start = &mut starts[it as usize];
+                *start -= 1;
+                all[*start as usize] = other;
             }
-            neighbours
-        });
-        neighbours.get(&object).map_or(&[], Vec::as_slice)
+        }
+        Self { starts: starts.into(), all: all.into() }
+    }
+
+    fn of(&self, number: u32) -> &[u32] {
+        let at = number as usize;
+        let (Some(&start), Some(&end)) = (self.starts.get(at), self.starts.get(at + 1)) else { return &[] };
+        &self.all[start as usize..end as usize]
     }
 }
 

@@ -4,7 +4,7 @@ use rowan::TextRange;
 
 use super::expr::Comparison;
 use super::literal::{self, Value};
-use super::object::{self, Class, Type};
+use super::object::{self, Class, Object, Type};
 use super::unit::UnitModel;
 use crate::syntax::AstNode as _;
 use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, ObjectRef, UnaryOp};
@@ -31,7 +31,7 @@ pub fn check(model: &UnitModel, it: BinExpr<'_>) -> Option<TimeCheck> {
         _ => return None,
     };
     let Expr::Object(object) = time else { return None };
-    is_step_time(model, object).then(|| TimeCheck {
+    names_step_time(model, object).then(|| TimeCheck {
         time: object.syntax().text_range(),
         op,
         constant: value.0,
@@ -40,12 +40,16 @@ pub fn check(model: &UnitModel, it: BinExpr<'_>) -> Option<TimeCheck> {
     })
 }
 
-fn is_step_time(model: &UnitModel, it: ObjectRef<'_>) -> bool {
-    let of = |it: &object::Object| it.class == Class::StepTime && it.ty == Type::Word;
+/// Whether an object is the time of a step.
+pub fn is_step_time(object: &Object) -> bool {
+    object.class == Class::StepTime && object.ty == Type::Word
+}
+
+fn names_step_time(model: &UnitModel, it: ObjectRef<'_>) -> bool {
     let address = it.address();
     match it.index() {
-        Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()).is_ok_and(|it| of(&it)),
-        None => model.addresses.get(&*address).is_some_and(|&it| of(model.object(it))),
+        Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()).is_ok_and(|it| is_step_time(&it)),
+        None => model.addresses.get(&*address).is_some_and(|&it| is_step_time(model.object(it))),
     }
 }
 

@@ -737,7 +737,7 @@ fn has_pl7_2_object(line: &str) -> bool {
     let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
     let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
     let is_transfer = || line.contains("->") && line.contains("END_BLOCK") && !line.contains(":=");
-    words.any(|it| object::pl72::parse(it).is_ok_and(|it| it.object.class != object::Class::Fault)) || is_transfer()
+    words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault)) || is_transfer()
 }
 
 /// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
@@ -750,7 +750,7 @@ fn has_object_of_pl7_alone(line: &str) -> bool {
         let word = rest.get(..end).unwrap_or_default().trim_end_matches([',', ':', '.']);
         let is_label =
             matches!(word.as_bytes(), [b'%', b'L' | b'l', digits @ ..] if digits.iter().all(u8::is_ascii_digit));
-        !is_label && object::pl72::parse(word).is_err()
+        !is_label && object::pl72::class_of(word).is_none()
     })
 }
 

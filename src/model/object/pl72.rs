@@ -56,6 +56,11 @@ pub fn parse(address: &str) -> Result<Address, AddressError> {
     }
 }
 
+/// What an address names; `None` when the text is none. What would be one instead is not looked for.
+pub fn class_of(text: &str) -> Option<Class> {
+    read(&text.to_ascii_uppercase()).ok().map(|(place, _)| place.class)
+}
+
 /// The address that a bare name seems to be: `B10` for `%M10`, `T0,D` for `T0.D`. `None` when the name does not look like
 /// one, or already is one.
 pub fn suggest(name: &str) -> Option<String> {
