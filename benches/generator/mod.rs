@@ -329,28 +329,29 @@ fn il_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
 /// `6 * divergences + 1` steps.
 pub fn chart(divergences: usize) -> String {
     let mut text = String::new();
-    ring(&mut text, 0, divergences);
+    ring(&mut text, "X", 0, divergences);
     text
 }
 
-/// Charts of one section that nothing connects, each of some divergences.
+/// Charts of one section that nothing connects, each of some divergences. Their steps have names: there are more of them than
+/// numbers.
 pub fn charts(count: usize, divergences: usize) -> String {
     let mut text = String::new();
     for at in 0..count {
-        ring(&mut text, at * (6 * divergences + 1), divergences);
+        ring(&mut text, "Pas", at * (6 * divergences + 1), divergences);
     }
     text
 }
 
-/// `first`: number of the first step. Inputs are numbered as the steps before the transitions.
-fn ring(text: &mut String, first: usize, divergences: usize) {
+/// `first`: number of the first step. Bits and words are numbered as the steps before the transitions.
+fn ring(text: &mut String, name: &str, first: usize, divergences: usize) {
     let steps = 6 * divergences + 1;
     for step in first..first + steps {
         let word = if step == first { "INITIAL_STEP" } else { "STEP" };
-        writeln!(text, "{word} X{step} : END_STEP").expect("a string");
+        writeln!(text, "{word} {name}{step} : END_STEP").expect("a string");
     }
     let mut cross = |from: &[usize], to: &[usize], receptivity: String| {
-        let list = |steps: &[usize]| steps.iter().map(|it| format!("X{it}")).collect::<Vec<_>>().join(",");
+        let list = |steps: &[usize]| steps.iter().map(|it| format!("{name}{it}")).collect::<Vec<_>>().join(",");
         let (from, to) = (list(from), list(to));
         writeln!(text, "TRANSITION FROM ({from}) TO ({to}) := {receptivity}; END_TRANSITION").expect("a string");
     };
@@ -360,7 +361,7 @@ fn ring(text: &mut String, first: usize, divergences: usize) {
         let ([a, b], [c, d], end) = ([start + 1, start + 2], [start + 3, start + 4], start + 5);
         if at % 2 == 0 {
             cross(&[start], &[a], format!("%MW{start} > 100 AND %M{start}"));
-            cross(&[start], &[c], format!("%MW{start} <= 100 AND %M{start} OR %X{start}.T > 600 AND NOT %M{start}"));
+            cross(&[start], &[c], format!("%MW{start} <= 100 AND %M{start} OR %MW{start} > 600 AND NOT %M{start}"));
             cross(&[b], &[end], bit(b));
             cross(&[d], &[end], bit(d));
         } else {

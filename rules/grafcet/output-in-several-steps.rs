@@ -13,7 +13,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         let Some(several) = raised_by_several(cx.program, uses) else { continue };
         // Of steps that are active together, that is a mistake by itself.
-        if coactive::assigned(cx.program, cx.studies(), uses).is_some() {
+        if coactive::assigned(cx.program, || cx.studies(), uses).is_some() {
             continue;
         }
         let Some((second, action)) = several.places.get(several.second) else { continue };

@@ -39,7 +39,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))
                 .label("assigned here too, which overrides the other")
                 .related_all(others.iter().map(|it| (it.site(), format!("also {} here", it.mode.verb()))));
-        } else if let Some(it) = coactive::assigned(cx.program, cx.studies(), uses) {
+        } else if let Some(it) = coactive::assigned(cx.program, || cx.studies(), uses) {
             let (first, second) = (it.first, it.second);
             let message =
                 format!("`{}` is assigned in the actions of steps that are active together", uses.object.text);

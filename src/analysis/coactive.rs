@@ -16,9 +16,9 @@ pub struct Coactive<'a> {
 
 /// The first of them, for a bit that nothing but assignments drives. A situation counts when the chart surely reaches it, by
 /// some values of what its receptivities ask; what no such situation shows is not known, and is none.
-pub fn assigned<'a>(
+pub fn assigned<'a, 's, 'p: 's>(
     program: &ProgramIndex<'a>,
-    studies: &[Study<'_, '_>],
+    studies: impl Fn() -> &'s [Study<'p, 'p>],
     uses: &ObjectUses<'a>,
 ) -> Option<Coactive<'a>> {
     /// Of more places, only so many are compared.
@@ -42,7 +42,7 @@ pub fn assigned<'a>(
             if !goes_on || first.1.has_steps_of(&second.1) || !drives::override_each_other(&first.0, &second.0) {
                 continue;
             }
-            if let Some(trace) = studies.iter().find_map(|it| together(program, it, first, second)) {
+            if let Some(trace) = studies().iter().find_map(|it| together(program, it, first, second)) {
                 return Some(Coactive { first: *first, second: *second, trace });
             }
         }
