@@ -301,6 +301,7 @@ pub fn family(detected: Detected) -> Option<Family> {
     match detected {
         Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
         Detected::Pl72 | Detected::Pl72Exchange => Some(Family::Pl72),
+        Detected::Step5 => Some(Family::Step5),
         Detected::Step7 => Some(Family::Step7),
         _ => None,
     }

@@ -4,10 +4,9 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::unit::DeadCause;
-use crate::syntax::Language;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let blocks = matches!(cx.model.language, Language::Awl(_));
+    let blocks = cx.model.language.is_statement_list();
     for stretch in &cx.model.unreachable {
         let part = match stretch.cause {
             // Code after the end of a block is another rule's affair.

@@ -51,7 +51,7 @@ fn loaded(cx: &UnitCx<'_>, object: &Object, value: i64) -> Option<String> {
     if object.class != Class::Counter {
         return None;
     }
-    let (what, _) = counts::number(Family::Step7, object)?;
+    let (what, _) = counts::number(cx.target.family(), object)?;
     let range = cx.target.preset(what)?;
     // A count that fits is taken as one: the model does not tell `C#250` from `250`.
     let counts = u32::try_from(value).is_ok_and(|it| range.contains(it));

@@ -7,7 +7,8 @@ use std::str::FromStr;
 
 use super::decode::{Encoding, SourceText, decode, looks_binary};
 use super::heading::{
-    HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
+    HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, step5_code, step5_heading,
+    strip_prefix_ignore_case, word,
 };
 use crate::model::entity::{BlockKind, BlockName, Entity, Family};
 use crate::model::object;
@@ -22,6 +23,7 @@ pub enum Dialect {
     #[default]
     Auto,
     Step7,
+    Step5,
     /// PL7, its language by content.
     Pl7,
     Pl7Il,
@@ -33,9 +35,10 @@ pub enum Dialect {
 }
 
 impl Dialect {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Auto,
         Self::Step7,
+        Self::Step5,
         Self::Pl7,
         Self::Pl7Il,
         Self::Pl7St,
@@ -49,6 +52,7 @@ impl Dialect {
         match self {
             Self::Auto => "auto",
             Self::Step7 => "step7",
+            Self::Step5 => "step5",
             Self::Pl7 => "pl7",
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
@@ -114,6 +118,8 @@ pub enum Detected {
     Pl72Exchange,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
+    /// STEP 5 statement list: printed blocks or a bare listing.
+    Step5,
     /// A PL7 project: its text is the listing of its tables.
     Stx,
     /// Part of a controller program, in a form that plclint does not read. `what` names the form.
@@ -148,7 +154,7 @@ pub mod unsupported {
     pub const CONTROL_EXPERT: &str = "Control Expert (Unity Pro) export";
     pub const SCL: &str = "STEP 7 structured control language (SCL)";
     pub const GRAPH: &str = "S7-GRAPH source";
-    pub const STEP5: &str = "STEP 5 program";
+    pub const STEP5: &str = "STEP 5 program file (S5D)";
     pub const SYMBOLS: &str = "STEP 7 symbol table";
     pub const IEC: &str = "IEC 61131-3 text that is not PL7";
 
@@ -165,6 +171,8 @@ enum Extension {
     Awl,
     /// STEP 7 statement list or a 3-D mesh.
     Stl,
+    /// STEP 5 statement list.
+    S5,
     /// A block of TIA Portal, or a data base.
     Tia,
     Il,
@@ -191,6 +199,7 @@ enum Storage {
 const EXTENSIONS: &[(&str, Extension)] = &[
     ("awl", Extension::Awl),
     ("stl", Extension::Stl),
+    ("s5", Extension::S5),
     ("db", Extension::Tia),
     ("udt", Extension::Tia),
     ("il", Extension::Il),
@@ -255,7 +264,7 @@ pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (So
 /// The listing of a PL7 project, or why it has none; `None` if the bytes are no project.
 fn project(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> Option<Result<SourceText, &'static str>> {
     let by_name = matches!(extension(hint.path), Extension::Form(unsupported::PROJECT, _));
-    if !(by_name || hint.explicit) || hint.dialect == Dialect::Step7 || !stx::is_archive(bytes) {
+    if !(by_name || hint.explicit) || matches!(hint.dialect, Dialect::Step7 | Dialect::Step5) || !stx::is_archive(bytes) {
         return None;
     }
     let listing = stx::listing(bytes, encoding.filter(|it| it.is_single_byte()));
@@ -310,6 +319,7 @@ fn detect_form(hint: FileHint<'_>, text: &str, tally: &Tally) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, tally),
         Dialect::Step7 => Detected::Step7,
+        Dialect::Step5 => Detected::Step5,
         Dialect::Pl7
         | Dialect::Pl7Il
         | Dialect::Pl7St
@@ -371,6 +381,8 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Form(unsupported::CONTROL_EXPERT, _) if !tally.markup => Detected::NotPlc,
         Extension::Form(what, _) => Detected::Unsupported { what },
         Extension::Awl if tally.markup => Detected::Unreadable { why: MARKUP },
+        Extension::S5 if tally.markup => Detected::Unreadable { why: MARKUP },
+        Extension::S5 => Detected::Step5,
         Extension::Awl => Detected::Step7,
         Extension::Stl if tally.lines == 0 && !text.is_empty() => Detected::Step7,
         Extension::Stl if weak && tally.step7 > 0 => Detected::Step7,
@@ -403,6 +415,9 @@ fn is_variable(line: &str) -> bool {
     let rest = rest.trim_start();
     !name.is_empty() && (rest.starts_with("AT %") || rest.starts_with("at %") || rest.starts_with(':'))
 }
+
+/// Of this many lines of STEP 5 that STEP 7 has too, one is its own at least: the end of a segment, a call.
+const STEP5_SHARE: u32 = 16;
 
 /// How much of a text is looked at.
 const SAMPLE: usize = 128 * 1024;
@@ -485,7 +500,8 @@ impl Tally {
         for line in Lines::new(text, Comments::Step7) {
             let code = line.code.split("//").next().unwrap_or_default().trim();
             // Parentheses and the dots of an omission alone mean nothing.
-            if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) {
+            // A semicolon starts a comment of STEP 5.
+            if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) && !(code.starts_with(';') && code.len() > 1) {
                 tally.add(code);
             }
         }
@@ -625,8 +641,10 @@ impl Tally {
         if self.headings() > 0 && self.pl7 + self.il + self.st + self.rung + self.chart > 0 {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
-        if self.step5 > 2 && (self.step5 + self.step7) * 2 > lines && self.step5 * 4 > self.step7 {
-            return Some(Detected::Unsupported { what: unsupported::STEP5 });
+        let of_step5 = self.step5 + self.step7 + self.step7_symbols;
+        let is_enough = self.step5 > 1 || self.step5 == 1 && of_step5 == lines && lines > 2;
+        if is_enough && of_step5 * 2 > lines && self.step5 * STEP5_SHARE >= self.step7 {
+            return Some(Detected::Step5);
         }
         let most = |count: u32| count * 5 >= lines * 3;
         let enough = |count: u32| count > 2 || count > 1 && count == lines;
@@ -929,6 +947,15 @@ fn is_step5(line: &str) -> bool {
     if line.starts_with("***") {
         return true;
     }
+    // The address that a print puts before the colon.
+    let address = line.find(|it: char| !it.is_ascii_hexdigit()).unwrap_or(0);
+    let behind = line.get(address..).unwrap_or_default().trim_start();
+    let line = if address >= 4 && behind.starts_with(':') { behind } else { line };
+    let line = step5_code(line);
+    let heading = step5_heading(line).and_then(|it| it.block_kind());
+    if heading.is_some_and(|it| matches!(it, BlockKind::Pb | BlockKind::Sb | BlockKind::Fx | BlockKind::Dx)) {
+        return true;
+    }
     let (colon, code) = match line.strip_prefix(':') {
         Some(code) if !code.starts_with('=') || code.starts_with("= ") => (true, code.trim_start()),
         _ => (false, line),
@@ -938,7 +965,26 @@ fn is_step5(line: &str) -> bool {
         let (kind, _) = operand.trim_start().split_at_checked(2).unwrap_or_default();
         ["KB", "KC", "KF", "KG", "KH", "KM", "KT", "KY", "KZ"].contains(&kind)
     });
-    operator || constant || colon && is_step7_instruction(code)
+    operator || constant || colon && is_step7_instruction(code) || is_step5_instruction(strip_step7_label(code))
+}
+
+/// Whether an instruction is one that STEP 7 has not: `SPA PB 10`, `SPB= M1`, `A DB 5`, `KEW`, `NAME :INIT`.
+fn is_step5_instruction(code: &str) -> bool {
+    let (mnemonic, rest) = word(code);
+    let rest = rest.trim_start();
+    let (operand, after) = word(rest);
+    let letters = operand.trim_end_matches(|it: char| it.is_ascii_digit());
+    let numbered = letters.len() < operand.len() || after.trim_start().starts_with(|it: char| it.is_ascii_digit());
+    match mnemonic {
+        "SPA" | "SPB" | "JU" | "JC" | "BA" | "BAB" | "DOU" | "DOC" => {
+            numbered && ["OB", "PB", "SB", "FB", "FX"].contains(&letters) || rest.starts_with('=')
+        }
+        "SPZ" | "SPN" | "SPP" | "SPM" | "SPO" | "JZ" | "JN" | "JP" | "JM" | "JO" => rest.starts_with('='),
+        "A" | "E" | "C" | "G" => numbered && letters == "DB" || letters == "DX",
+        "KEW" | "KZW" | "CFW" | "CSW" => rest.is_empty(),
+        "NAME" | "BEZ" | "DECL" => rest.starts_with(':') && !rest.starts_with(":="),
+        _ => false,
+    }
 }
 
 /// Whether a line declares, initialises or passes a value: `tem : TIMER;`, `duree := S5T#1S`.
@@ -1033,7 +1079,7 @@ mod tests {
                 "FUNCTION_BLOCK \"f\"\nBEGIN\n  \"x\" := 1;\n y := 2;\nEND_FUNCTION_BLOCK",
                 unsupported(unsupported::SCL),
             );
-            check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", unsupported(unsupported::STEP5));
+            check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", Detected::Step5);
             check(path, RUNG, LD);
         }
         check("a.txt", "DATA_BLOCK DB 1\nSTRUCT\n a : INT;\nEND_STRUCT;\nBEGIN\n a := 1;\nEND_DATA_BLOCK", STEP7);

@@ -22,7 +22,7 @@ use crate::target::pl72::BLOCKS;
 /// What the code of a unit does. `text` is the tree's text. Total: what is not understood leaves no statement.
 pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Language) -> UnitModel {
     match language {
-        Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
+        Language::Awl(_) | Language::Step5(_) => awl::lower(root, entity, language),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => exchange::lower(root, text, entity),
