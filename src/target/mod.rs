@@ -14,7 +14,7 @@ use std::str::FromStr;
 use count::Counts;
 pub use count::{Count, Counted, CountedBy, Numbered};
 
-use crate::model::entity::Family;
+use crate::model::entity::{BlockKind, Family};
 
 /// A figure and the place that gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -440,6 +440,20 @@ impl Target {
         }
     }
 
+    /// Numbers of the blocks of a kind, those of every controller of the family when it is unknown. `None` where no source
+    /// tells.
+    pub fn block_numbers(&self, kind: BlockKind) -> Option<Range> {
+        match self.family {
+            Family::Pl7 | Family::Pl72 => None,
+            Family::Step5 => {
+                let blocks = self.step5().map_or(step5::LARGEST_BLOCKS, |it| it.blocks);
+                matches!(kind, BlockKind::Pb | BlockKind::Sb | BlockKind::Fb | BlockKind::Fx | BlockKind::Db)
+                    .then(|| Range::new(0, blocks.value.saturating_sub(1), blocks.source))
+            }
+            Family::Step7 => step7::block_numbers(kind),
+        }
+    }
+
     /// Deepest nesting of subroutine or block calls. A STEP 7 CPU has its own, so an unknown one has none; PL7-2 has no
     /// calls.
     pub fn call_depth(&self) -> Option<Limit> {
@@ -454,7 +468,8 @@ impl Target {
     pub const fn parenthesis_depth(&self) -> Limit {
         match self.family {
             Family::Pl7 | Family::Pl72 => pl7::PARENTHESIS_DEPTH,
-            Family::Step5 | Family::Step7 => step7::PARENTHESIS_DEPTH,
+            Family::Step5 => step5::PARENTHESIS_DEPTH,
+            Family::Step7 => step7::PARENTHESIS_DEPTH,
         }
     }
 
@@ -471,7 +486,8 @@ impl Target {
     pub const fn label_length(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 | Family::Pl72 => None,
-            Family::Step5 | Family::Step7 => Some(step7::LABEL_LENGTH),
+            Family::Step5 => Some(step5::LABEL_LENGTH),
+            Family::Step7 => Some(step7::LABEL_LENGTH),
         }
     }
 

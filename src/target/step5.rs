@@ -6,6 +6,12 @@ use crate::model::entity::{BlockKind, BlockName};
 /// The source document leaves the rest open.
 const GENERAL: &str = "the vendor's general documentation";
 
+/// Longest jump label, in characters.
+pub const LABEL_LENGTH: Limit = Limit::new(4, GENERAL);
+
+/// Nesting expressions `U( O(` open at once.
+pub const PARENTHESIS_DEPTH: Limit = Limit::new(6, GENERAL);
+
 /// A counter counts from 0 to this.
 pub const COUNTER_PRESETS: Range = Range::new(0, 999, GENERAL);
 

@@ -243,6 +243,16 @@ impl Grammar<'_, '_> {
             if self.heading().is_some() || in_block && self.at_formal_operand() {
                 break;
             }
+            if let Some(tokens) = self.at_label().filter(|it| self.p.nth(*it) == Some(SegmentEnd))
+                && !self.p.nth_newline_before(tokens)
+                && self.p.nth(tokens.saturating_sub(2)) != Some(Ident)
+            {
+                // `0010 :***`
+                for _ in 0..tokens {
+                    self.p.bump();
+                }
+                continue;
+            }
             match kind {
                 SegmentEnd => {
                     self.p.bump();
