@@ -229,7 +229,7 @@ fn is_application(db: &dyn Db, file: SourceFile) -> bool {
 /// Whether a file declares variables beside or without code: it belongs to the code around it.
 #[salsa::tracked]
 fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
-    let mut declaring = units(db, file).iter().filter(|it| it.language(db) == Language::Exchange);
+    let mut declaring = units(db, file).iter().filter(|it| it.language(db).declares_symbols());
     declaring.any(|&it| !facts(db, it).symbols.is_empty())
 }
 
@@ -301,7 +301,7 @@ pub fn family(detected: Detected) -> Option<Family> {
     match detected {
         Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
         Detected::Pl72 | Detected::Pl72Exchange => Some(Family::Pl72),
-        Detected::Step5 => Some(Family::Step5),
+        Detected::Step5 | Detected::Step5Symbols => Some(Family::Step5),
         Detected::Step7 => Some(Family::Step7),
         _ => None,
     }
@@ -322,7 +322,7 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
 /// What the symbols of a program name. It has no places.
 #[salsa::tracked]
 pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
-    let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
+    let declaring = program_units(db, program).iter().filter(|it| it.language(db).declares_symbols());
     SymbolTable::new(declaring.map(|&unit| &**facts(db, unit)))
 }
 
@@ -763,7 +763,7 @@ fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Fa
 /// Bytes of tokens that the syntax could not place.
 fn not_understood(language: Language, parse: &Parse) -> usize {
     // What is unknown between the programs of an exchange file, or in a vendor's table, is no mistake.
-    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Pl7Xref) {
+    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Step5Symbols | Language::Pl7Xref) {
         return 0;
     }
     let root = parse.syntax();

@@ -694,7 +694,7 @@ fn own_context(facts: &UnitFacts) -> Option<Context> {
             1 => Context::Cyclic,
             // GRF:415, 967-978: after a stop, and after a power failure.
             20..=22 if matches!(facts.language, Language::Step5(_)) => Context::Startup,
-            100..=102 if matches!(facts.language, Language::Awl(_)) => Context::Startup,
+            100..=102 if !matches!(facts.language, Language::Step5(_)) => Context::Startup,
             other => Context::Interrupt(*other),
         }),
         Entity::Listing => Some(Context::Cyclic),

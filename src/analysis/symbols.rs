@@ -19,6 +19,8 @@ pub struct SymbolTable {
     addresses: FxHashMap<SmolStr, Meaning>,
     /// Symbol of an address in upper case.
     names: FxHashMap<SmolStr, SmolStr>,
+    /// What the addresses name, of languages other than PL7, whose items and bits inherit symbols.
+    objects: FxHashMap<SmolStr, Object>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,6 +37,9 @@ impl SymbolTable {
             let meaning = match &symbol.object {
                 Some(object) => {
                     let address = SmolStr::from(object.text.to_ascii_uppercase());
+                    if !address.starts_with('%') {
+                        table.objects.entry(address.clone()).or_insert_with(|| object.clone());
+                    }
                     table.names.entry(address.clone()).or_insert_with(|| symbol.name.clone());
                     Meaning::Address(address)
                 }
@@ -55,6 +60,8 @@ impl SymbolTable {
     /// The address of a symbol. An item or bit that has no symbol of its own goes by that of its object: `Etat:X1`,
     /// `Tempo.Q`, a table by that of its first word (PL7:1234-1242).
     pub fn address(&self, symbol: &str) -> Option<SmolStr> {
+        // STEP 5 marks symbols in code.
+        let symbol = symbol.strip_prefix('-').unwrap_or(symbol);
         let base = symbol.find(['.', ':']).unwrap_or(symbol.len());
         let (name, rest) = symbol.split_at_checked(base)?;
         match self.addresses.get(&key(name))? {
@@ -91,7 +98,8 @@ impl SymbolTable {
             // The odd parts stand between two of the quotes, but for one behind an unpaired quote.
             let is_closed = at % 2 == 0 && at > 1;
             let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
-            let other = if name.starts_with('%') { self.symbol(name) } else { self.address(name) };
+            let other = if name.starts_with('%') { None } else { self.address(name) };
+            let other = other.or_else(|| self.symbol(name));
             if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
                 out.truncate(out.len() - part.len());
                 out.push_str(" (`");
@@ -114,7 +122,11 @@ impl SymbolTable {
             let suffix = rest.rsplit_once(']').map(|it| it.1).filter(|it| !it.is_empty());
             pl7::parse_indexed(&self.address(name)?, suffix)
         } else {
-            pl7::parse(&self.address(text)?)
+            let address = self.address(text)?;
+            match self.objects.get(&address) {
+                Some(object) => Ok(object.clone()),
+                None => pl7::parse(&address),
+            }
         };
         Some(Object { text: object.text.clone(), ..resolved.ok()? })
     }

@@ -13,6 +13,7 @@ use super::heading::{
 use crate::model::entity::{BlockKind, BlockName, Entity, Family};
 use crate::model::object;
 use crate::syntax::pl7::ladder_words;
+use crate::syntax::step5::symbols;
 
 use super::scan::{Comments, Lines};
 use super::stx;
@@ -120,6 +121,8 @@ pub enum Detected {
     Step7,
     /// STEP 5 statement list: printed blocks or a bare listing.
     Step5,
+    /// Symbols of a STEP 5 program.
+    Step5Symbols,
     /// A PL7 project: its text is the listing of its tables.
     Stx,
     /// Part of a controller program, in a form that plclint does not read. `what` names the form.
@@ -397,6 +400,7 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
         Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
         Extension::Sfc if tally.chart > 0 => Detected::Pasted(Pl7Text::Sfc),
+        Extension::Table if tally.symbols_step5 * 2 > tally.lines => Detected::Step5Symbols,
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
         Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
@@ -479,8 +483,9 @@ struct Tally {
     /// Words of S7-GRAPH.
     graph: u32,
     step5: u32,
-    /// Lines of a symbol table.
+    /// Lines of a symbol table, and those of one of STEP 5.
     symbols: u32,
+    symbols_step5: u32,
     /// Natural language.
     prose: u32,
     /// The text starts like XML, HTML or JSON.
@@ -513,6 +518,7 @@ impl Tally {
         if is_symbol_row(line) {
             self.symbols += 1;
         }
+        self.symbols_step5 += u32::from(symbols::row(line).is_some());
         if let Some((block, _)) = exchange_block(line) {
             self.blocks += 1;
             self.own_blocks += u32::from(matches!(block, "[SOURCE_UNIT]" | "[DATA_UNIT]"));
@@ -1200,6 +1206,29 @@ mod tests {
         check("a.seq", "\tPump\tE 0.0\tcomment\n", unsupported(unsupported::SYMBOLS));
         check("a.sfc", "INITIAL_STEP X0 : END_STEP", Detected::Pasted(Pl7Text::Sfc));
         check("a.sfc", "<svg/>", Detected::NotPlc);
+    }
+
+    #[test]
+    fn step5_is_no_step7() {
+        let s5 = Detected::Step5;
+        for path in ["a.awl", "a.txt", "a.stl", "a.s5"] {
+            check(path, "PB 10\n     :U    E 0.0\n     :=    A 4.0\n     :BE\n", s5);
+            check(path, "PB 10\nA I 0.0\n= Q 4.0\nJU PB 11\nBE\n", s5);
+            check(path, "U t1\nU X1\nS X2\nR X1\n***\nU t2\nU X2\nS X3\nR X2\n***\n", s5);
+            check(path, "; start-up\nUN M0.0\nS M0.0\nSPA PB10\nSPA PB20\nBE\n", s5);
+            check(path, "0005      :U    E 0.0\n0006      :L    KT 200.1\n0007      :SV   T 3\n0008      :***\n", s5);
+        }
+        for text in [
+            "U E 0.0\n= A 4.0\nSPA M001\nM001: NOP 0\nBE\n",
+            "FUNCTION FB 5 : VOID\nBEGIN\nNETWORK\nU E 0.0\n= A 4.0\nEND_FUNCTION\n",
+            "AUF DB 5\nL DBW 0\nT MW 2\nU E 0.0\nUC FC 1\nBE\n",
+            "(*** pump ***)\nU E 0.0\n= A 4.0\n// *** valve\nU E 0.1\n= A 4.1\n",
+        ] {
+            check("a.awl", text, STEP7);
+        }
+        check("z0.seq", "1\tE 0.0\tSTART\tTaster\n2\tMW 10\tZAHL\t\n", Detected::Step5Symbols);
+        assert_eq!("step5".parse(), Ok(Dialect::Step5));
+        assert_eq!(detect(FileHint { dialect: Dialect::Step5, ..hint("a.awl") }, "U E 0.0\n"), s5);
     }
 
     #[test]

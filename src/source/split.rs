@@ -48,6 +48,7 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
     match detected {
         Detected::Step7 => step7(&mut units, hint),
         Detected::Step5 => step5(&mut units, hint),
+        Detected::Step5Symbols => units.push(0, Draft::new(Entity::Container, Some(Language::Step5Symbols))),
         Detected::Pasted(default) => pasted(&mut units, default, hint),
         Detected::Exchange => exchange(&mut units, Family::Pl7),
         Detected::Pl72Exchange => exchange(&mut units, Family::Pl72),
@@ -789,6 +790,23 @@ fn next_key(line: &str) -> Option<Key> {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+
+    #[test]
+    fn step5_blocks() {
+        let text = "; machine 7\nOB 1\n:SPA PB 10\n:BE\n\n; graph\nBAUSTEIN : PB 10\n:U E 0.0\n:= A 4.0\n:BE\nFB5 LAE=22\nNAME :X\n:BE\n\
+                    DB 3\n0: KH = 0000;\n";
+        let units = split(text, Detected::Step5, &SplitHint::default());
+        let keys: Vec<&str> = units.iter().map(|it| it.key.as_str()).collect();
+        assert_eq!(keys, ["OB1", "PB10", "FB5", "DB3"]);
+        assert!(units.iter().all(|it| it.language == Language::Step5(Mnemonics::German)));
+        assert_eq!(usize::from(units[1].range.start()), text.find("\n; graph").expect("there"));
+        let edited = text.replace("E 0.0", "E 0.12");
+        let again = resplit(text, &units, &edited, Detected::Step5, &SplitHint::default());
+        assert_eq!(again, Some(split(&edited, Detected::Step5, &SplitHint::default())));
+        let listing = split("A I 0.0\n= Q 4.0\n***\n", Detected::Step5, &SplitHint::default());
+        assert_eq!((&listing[0].entity, listing[0].language), (&Entity::Listing, Language::Step5(Mnemonics::English)));
+        assert_eq!(split("", Detected::Step5, &SplitHint::default()).len(), 1);
+    }
 
     use super::super::detect::{FileHint, detect};
     use super::*;

@@ -19,6 +19,7 @@ mod grammar;
 mod lexer;
 
 pub mod instruction;
+pub mod symbols;
 
 #[cfg(test)]
 mod tests;
