@@ -763,7 +763,8 @@ fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Fa
 /// Bytes of tokens that the syntax could not place.
 fn not_understood(language: Language, parse: &Parse) -> usize {
     // What is unknown between the programs of an exchange file, or in a vendor's table, is no mistake.
-    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Step5Symbols | Language::Pl7Xref) {
+    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Step5Symbols | Language::Pl7Xref)
+    {
         return 0;
     }
     let root = parse.syntax();

@@ -48,7 +48,13 @@ struct Names {
 
 impl Names {
     fn new(program: &ProgramIndex<'_>) -> Self {
-        let mut names = Self { family: program.family, defined: 0, instances: FxHashSet::default(), by_number: false, by_symbol: false };
+        let mut names = Self {
+            family: program.family,
+            defined: 0,
+            instances: FxHashSet::default(),
+            by_number: false,
+            by_symbol: false,
+        };
         for facts in &program.units {
             let entity = &facts.entity;
             names.instances.extend(facts.instance_of.clone());

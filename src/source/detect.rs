@@ -267,7 +267,8 @@ pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (So
 /// The listing of a PL7 project, or why it has none; `None` if the bytes are no project.
 fn project(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> Option<Result<SourceText, &'static str>> {
     let by_name = matches!(extension(hint.path), Extension::Form(unsupported::PROJECT, _));
-    if !(by_name || hint.explicit) || matches!(hint.dialect, Dialect::Step7 | Dialect::Step5) || !stx::is_archive(bytes) {
+    if !(by_name || hint.explicit) || matches!(hint.dialect, Dialect::Step7 | Dialect::Step5) || !stx::is_archive(bytes)
+    {
         return None;
     }
     let listing = stx::listing(bytes, encoding.filter(|it| it.is_single_byte()));

@@ -102,7 +102,10 @@ pub(super) fn step5_heading(line: &str) -> Option<Entity> {
     let (number, rest) = number(rest.trim_start_matches([' ', '\t']))?;
     let rest = rest.trim_start();
     let (key, value) = word(rest);
-    let ends = rest.is_empty() || rest == ":" || rest.starts_with(',') || !key.is_empty() && value.trim_start().starts_with('=');
+    let ends = rest.is_empty()
+        || rest == ":"
+        || rest.starts_with(',')
+        || !key.is_empty() && value.trim_start().starts_with('=');
     ends.then_some(Entity::Block { kind, name: BlockName::Number(kind, number) })
 }
 

@@ -17,7 +17,7 @@ use super::heading::{
 };
 use super::scan::{Comments, Lines};
 use crate::model::entity::{Entity, Family, Part, Task};
-use crate::syntax::{Language, Mnemonics};
+use crate::syntax::{self, Language, Mnemonics};
 
 /// A piece of a file that is parsed and checked by itself.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -96,7 +96,8 @@ pub fn resplit(
     if let (Detected::Step7, Language::Awl(before)) | (Detected::Step5, Language::Step5(before)) =
         (detected, unit.language)
     {
-        if hint.mnemonics.is_none() && mnemonics(new) != before {
+        let vote = if detected == Detected::Step5 { syntax::step5::vote } else { mnemonics };
+        if hint.mnemonics.is_none() && vote(new) != before {
             return None;
         }
         hint.mnemonics = Some(before);
@@ -367,7 +368,7 @@ fn step7(units: &mut Units<'_>, hint: &SplitHint) {
 /// STEP 5: headings of blocks, and code before the first one.
 fn step5(units: &mut Units<'_>, hint: &SplitHint) {
     let text = units.text;
-    let language = Language::Step5(hint.mnemonics.unwrap_or_else(|| mnemonics(text)));
+    let language = Language::Step5(hint.mnemonics.unwrap_or_else(|| syntax::step5::vote(text)));
     let mut end = 0;
     for line in text.split_inclusive(['\n', '\r']) {
         end += line.len();

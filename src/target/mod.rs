@@ -127,7 +127,11 @@ impl FromStr for Target {
         let of_pl72 = || pl72::CONTROLLERS.iter().find(|it| self::key(it.name) == key).map(Self::of_pl72);
         let of_step7 = || step7::CPUS.iter().find(|it| self::key(it.name) == key).map(Self::step7);
         let of_step5 = || step5::CPUS.iter().find(|it| self::key(it.name) == key).map(Self::of_step5);
-        of_pl7.or_else(of_pl72).or_else(of_step7).or_else(of_step5).ok_or_else(|| UnknownController { name: name.to_owned() })
+        of_pl7
+            .or_else(of_pl72)
+            .or_else(of_step7)
+            .or_else(of_step5)
+            .ok_or_else(|| UnknownController { name: name.to_owned() })
     }
 }
 

@@ -46,8 +46,9 @@ pub fn parse_step5(text: &str) -> Result<Value, LiteralError> {
 
 fn whole(letters: &str, body: &str, least: i64, most: i64) -> Result<Value, LiteralError> {
     let value = body.parse::<i64>().ok().filter(|it| (least..=most).contains(it));
-    let value =
-        value.ok_or_else(|| error(format!("`{letters} {body}` is no constant: `{letters}` is {least} to {most} {VENDOR}")))?;
+    let value = value.ok_or_else(|| {
+        error(format!("`{letters} {body}` is no constant: `{letters}` is {least} to {most} {VENDOR}"))
+    })?;
     Ok(Value::Int { value, ty: IntType::Plain })
 }
 
@@ -57,7 +58,9 @@ fn pattern(letters: &str, body: &str, base: u32, digits: usize) -> Result<Value,
         Some(value) => Ok(Value::Int { value, ty: IntType::Bits(if digits == 8 { 32 } else { 16 }) }),
         None => {
             let kind = if base == 2 { "binary" } else { "hexadecimal" };
-            Err(error(format!("`{letters} {body}` is no constant: `{letters}` has up to {digits} {kind} digits {VENDOR}")))
+            Err(error(format!(
+                "`{letters} {body}` is no constant: `{letters}` has up to {digits} {kind} digits {VENDOR}"
+            )))
         }
     }
 }
@@ -66,7 +69,9 @@ fn two_bytes(body: &str) -> Result<Value, LiteralError> {
     let byte = |it: &str| it.parse::<u8>().ok().map(i64::from);
     match body.split_once(',').and_then(|(high, low)| Some((byte(high)?, byte(low)?))) {
         Some((high, low)) => Ok(Value::Int { value: high << 8 | low, ty: IntType::Bits(16) }),
-        None => Err(error(format!("`KY {body}` is no constant: `KY` is two bytes of 0 to 255, as in `KY 12,34` {VENDOR}"))),
+        None => {
+            Err(error(format!("`KY {body}` is no constant: `KY` is two bytes of 0 to 255, as in `KY 12,34` {VENDOR}")))
+        }
     }
 }
 
@@ -100,7 +105,11 @@ fn float(body: &str) -> Result<Value, LiteralError> {
     let (mantissa, exponent) = digits.split_at(at);
     let exponent = exponent.strip_prefix('+').unwrap_or(exponent);
     let exponent: i32 = if exponent.is_empty() { 0 } else { exponent.parse().map_err(|_| fault())? };
-    if mantissa.is_empty() || mantissa.len() > 7 || !mantissa.bytes().all(|it| it.is_ascii_digit()) || exponent.abs() > 38 {
+    if mantissa.is_empty()
+        || mantissa.len() > 7
+        || !mantissa.bytes().all(|it| it.is_ascii_digit())
+        || exponent.abs() > 38
+    {
         return Err(fault());
     }
     let value: f64 = format!("0.{mantissa}e{exponent}").parse().map_err(|_| fault())?;

@@ -92,7 +92,9 @@ pub fn parse(operand: &str, mnemonics: Mnemonics) -> Result<Object, AddressError
         error
     })?;
     let rights = match class {
-        Class::Output | Class::Memory | Class::Data | Class::Timer | Class::Counter | Class::LocalData => Rights::ReadWrite,
+        Class::Output | Class::Memory | Class::Data | Class::Timer | Class::Counter | Class::LocalData => {
+            Rights::ReadWrite
+        }
         _ => Rights::Unknown,
     };
     Ok(Object { text: SmolStr::new(&compact), class, ty, footprint, rights, extracted: false, indexed: false })
@@ -181,8 +183,12 @@ fn nearest(compact: &str, spaced: bool, mnemonics: Mnemonics) -> Option<String> 
     let (letters, rest) = upper.split_at(end);
     let letters = translate(letters, mnemonics).unwrap_or(letters);
     let whole = rest.split(['.', ',']).next().unwrap_or_default();
-    let slips =
-        [format!("{letters}{rest}"), format!("{letters}{}", rest.replace(',', ".")), format!("{letters}{whole}.0"), format!("{letters}{whole}")];
+    let slips = [
+        format!("{letters}{rest}"),
+        format!("{letters}{}", rest.replace(',', ".")),
+        format!("{letters}{whole}.0"),
+        format!("{letters}{whole}"),
+    ];
     let found = slips.into_iter().find(|it| *it != upper && read(it, mnemonics).is_ok())?;
     Some(if spaced { found.replacen(letters, &format!("{letters} "), 1) } else { found })
 }

@@ -458,11 +458,7 @@ const SLOTS: usize = 1024;
 
 impl Words {
     /// Words of both sets, then those of one.
-    pub(in crate::syntax) const fn new(
-        both: &[(&str, Op)],
-        german: &[(&str, Op)],
-        english: &[(&str, Op)],
-    ) -> Self {
+    pub(in crate::syntax) const fn new(both: &[(&str, Op)], german: &[(&str, Op)], english: &[(&str, Op)]) -> Self {
         assert!((both.len() + german.len() + english.len()) * 2 < SLOTS);
         let mut table = [Entry { key: 0, german: None, english: None }; SLOTS];
         let mut at = 0;

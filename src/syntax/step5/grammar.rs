@@ -365,8 +365,8 @@ impl Grammar<'_, '_> {
                 }
             }
         }
-        let calls_function_block = matches!(op, Op::CallUnconditional | Op::CallConditional)
-            && callee.starts_with(['F', 'f', '-', '=']);
+        let calls_function_block =
+            matches!(op, Op::CallUnconditional | Op::CallConditional) && callee.starts_with(['F', 'f', '-', '=']);
         if matches!(op, Op::AndOpen | Op::OrOpen) && !self.at_line_end() && self.op_here().is_some() {
             return;
         }
@@ -383,7 +383,10 @@ impl Grammar<'_, '_> {
 
     fn at_operand(&self) -> bool {
         !self.at_line_end()
-            && matches!(self.p.current(), Some(Address | TypedConstant | Number | Ident | QuotedSymbol | Eq | Plus | Minus))
+            && matches!(
+                self.p.current(),
+                Some(Address | TypedConstant | Number | Ident | QuotedSymbol | Eq | Plus | Minus)
+            )
     }
 
     /// Whether an operand stood here.
@@ -408,7 +411,10 @@ impl Grammar<'_, '_> {
             }
             Some(Ident) => {
                 // `M Ts[100]`: the letter of the area, and the table (GRF:382).
-                if is_area(self.p.current_text()) && on_line && self.p.nth(1) == Some(Ident) && self.p.nth(2) == Some(LBrack)
+                if is_area(self.p.current_text())
+                    && on_line
+                    && self.p.nth(1) == Some(Ident)
+                    && self.p.nth(2) == Some(LBrack)
                 {
                     self.p.bump();
                 }
@@ -502,9 +508,7 @@ impl Grammar<'_, '_> {
             (Some(Ident), Some(Plus | Minus | Ident)) if is_constant(word) => true,
             (Some(Ident), None) => !is_mnemonic(word),
             (Some(Minus), Some(Ident)) => true,
-            (Some(Eq), Some(Ident)) => {
-                !is_area(self.p.nth_text(at + 1)) && self.p.nth_newline_before(at + 2)
-            }
+            (Some(Eq), Some(Ident)) => !is_area(self.p.nth_text(at + 1)) && self.p.nth_newline_before(at + 2),
             _ => false,
         }
     }

@@ -3,9 +3,11 @@
 //! The source document shows the German set (GRF:222-1242); the rest of it, the English set and the substitution
 //! instructions for formal operands (`SVZ =`, `RB =`) come from the vendor's general documentation.
 
-use crate::syntax::{Mnemonics, SyntaxKind};
 use crate::syntax::awl::ast::Instr;
-use crate::syntax::awl::instruction::{ArithOp, Conversion, JumpIf, LogicOp, NumberType, Op, Shift, TimerMode, Width, Words};
+use crate::syntax::awl::instruction::{
+    ArithOp, Conversion, JumpIf, LogicOp, NumberType, Op, Shift, TimerMode, Width, Words,
+};
+use crate::syntax::{Mnemonics, SyntaxKind};
 
 /// The mnemonic of `word` in one set, ignoring case. `(` of `U(` and `=` of `SPA=` belong to it.
 pub fn lookup(word: &str, mnemonics: Mnemonics) -> Option<Op> {
@@ -39,9 +41,9 @@ static WORDS: Words = Words::new(BOTH, GERMAN, ENGLISH);
 
 /// Same word and meaning in both sets.
 const BOTH: &[(&str, Op)] = {
+    use crate::syntax::awl::instruction::Relation::{Eq, Ge, Gt, Le, Lt, Ne};
     use ArithOp::{Add, Div, Mul, Sub};
     use NumberType::{Dint, Int, Real};
-    use crate::syntax::awl::instruction::Relation::{Eq, Ge, Gt, Le, Lt, Ne};
     &[
         ("O", Op::Or),
         ("ON", Op::OrNot),

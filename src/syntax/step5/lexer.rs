@@ -33,7 +33,8 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
                 if line_start && labelled && is_name_line(word) {
                     lexer.push_to(Ident, end);
                     lexer.free_text();
-                } else if let Some(end) = operand_end(text, lexer.at, end, at_start).filter(|_| !(line_start && labelled))
+                } else if let Some(end) =
+                    operand_end(text, lexer.at, end, at_start).filter(|_| !(line_start && labelled))
                 {
                     let kind = if constant_kind(word).is_some() { TypedConstant } else { Address };
                     lexer.push_to(kind, end);
@@ -80,9 +81,9 @@ fn is_name_line(word: &str) -> bool {
 
 /// Letters of the operands that have a number, in both mnemonic sets.
 const AREAS: [&str; 52] = [
-    "E", "EB", "EW", "ED", "I", "IB", "IW", "ID", "A", "AB", "AW", "AD", "Q", "QB", "QW", "QD", "M", "MB", "MW", "MD", "F",
-    "FY", "FW", "FD", "S", "SY", "SW", "SD", "D", "DL", "DR", "DW", "DD", "T", "Z", "C", "PB", "PY", "PW", "OY", "OW", "BS",
-    "OB", "SB", "FB", "FX", "DB", "DX", "RS", "RI", "RT", "BA",
+    "E", "EB", "EW", "ED", "I", "IB", "IW", "ID", "A", "AB", "AW", "AD", "Q", "QB", "QW", "QD", "M", "MB", "MW", "MD",
+    "F", "FY", "FW", "FD", "S", "SY", "SW", "SD", "D", "DL", "DR", "DW", "DD", "T", "Z", "C", "PB", "PY", "PW", "OY",
+    "OW", "BS", "OB", "SB", "FB", "FX", "DB", "DX", "RS", "RI", "RT", "BA",
 ];
 
 pub(super) fn is_area(letters: &str) -> bool {
@@ -169,7 +170,9 @@ fn operand_end(text: &str, start: usize, end: usize, at_start: bool) -> Option<u
         _ => number,
     };
     let has_bit = bit > number + 1;
-    if at_start && !(has_bit && letters < word.len()) || letters < word.len() && word.starts_with(['S', 's']) && !has_bit {
+    if at_start && !(has_bit && letters < word.len())
+        || letters < word.len() && word.starts_with(['S', 's']) && !has_bit
+    {
         return None;
     }
     Some(if has_bit { bit } else { number })

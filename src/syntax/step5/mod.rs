@@ -24,9 +24,25 @@ pub mod symbols;
 #[cfg(test)]
 mod tests;
 
-use super::{Mnemonics, Parse, Parser};
+use super::{Mnemonics, Parse, Parser, SyntaxKind};
 
 pub(crate) use lexer::is_constant;
+
+/// Which mnemonic set a text is written in: by the words and operands that STEP 7 has too, and where these say nothing, by
+/// the letters of flags (`F 1.0`, `FW 2`, or `M`). The German set where nothing does.
+pub fn vote(text: &str) -> Mnemonics {
+    super::awl::vote(text).unwrap_or_else(|| {
+        let tokens = lexer::lex(text);
+        let mut at = 0;
+        let has_flag = tokens.iter().any(|it| {
+            let word = &text[at..at + it.len as usize];
+            at += it.len as usize;
+            let letters = word.split(|it: char| !it.is_ascii_alphabetic()).next().unwrap_or_default();
+            it.kind == SyntaxKind::Address && ["F", "FY", "FW", "FD"].contains(&letters)
+        });
+        if has_flag { Mnemonics::English } else { Mnemonics::German }
+    })
+}
 
 /// Parses one unit: a block, a listing, or several of them.
 pub fn parse(text: &str, mnemonics: Mnemonics) -> Parse {

@@ -93,7 +93,8 @@ fn lex(text: &str) -> Vec<Token> {
         if let Some(row) = row(line) {
             for (kind, field) in [(Ident, row.operand), (FreeText, row.symbol), (FreeText, row.comment)] {
                 // The fields are parts of the line, in order.
-                let Some(start) = (field.as_ptr() as usize).checked_sub(line.as_ptr() as usize).filter(|it| *it >= at) else {
+                let Some(start) = (field.as_ptr() as usize).checked_sub(line.as_ptr() as usize).filter(|it| *it >= at)
+                else {
                     continue;
                 };
                 push(Whitespace, line.get(at..start).unwrap_or_default());
@@ -117,7 +118,12 @@ mod tests {
     #[test]
     fn rows_in_both_forms() {
         let expected = Some(Row { operand: "E 0.0", symbol: "START", comment: "Taster" });
-        for line in ["1\tE 0.0\tSTART\tTaster", "\tE 0.0\tSTART\tTaster", "\u{1}E 0.0   \u{2}START   \u{3}Taster", "E 0.0   START     Taster"] {
+        for line in [
+            "1\tE 0.0\tSTART\tTaster",
+            "\tE 0.0\tSTART\tTaster",
+            "\u{1}E 0.0   \u{2}START   \u{3}Taster",
+            "E 0.0   START     Taster",
+        ] {
             assert_eq!(row(line), expected, "{line:?}");
         }
         // The order of STEP 7's tables.

@@ -24,7 +24,11 @@ fn shape(node: SyntaxNode<'_>) -> String {
 
 fn errors(parse: &Parse) -> Vec<String> {
     let text = parse.syntax().text().into_owned();
-    parse.errors().iter().map(|it| format!("{}: {}", &text[std::ops::Range::<usize>::from(it.range)], it.message)).collect()
+    parse
+        .errors()
+        .iter()
+        .map(|it| format!("{}: {}", &text[std::ops::Range::<usize>::from(it.range)], it.message))
+        .collect()
 }
 
 fn clean(text: &str) -> Parse {
@@ -58,13 +62,20 @@ fn with_and_without_colons() {
 
 #[test]
 fn instructions_of_both_sets() {
-    let german = "U E 0.0\nSPA PB 10\nSPB FB 5\nSPA= M1\nSPB =M1\nM1 :BEB\nA DB 5\nL KF -1\n+F\n!= F\n:F\nxF\nKEW\nBE\n";
+    let german =
+        "U E 0.0\nSPA PB 10\nSPB FB 5\nSPA= M1\nSPB =M1\nM1 :BEB\nA DB 5\nL KF -1\n+F\n!= F\n:F\nxF\nKEW\nBE\n";
     let english = "A I 0.0\nJU PB 10\nJC FB 5\nJU= M1\nJC =M1\nM1 :BEC\nC DB 5\nL KF -1\n+F\n!=F\n:F\nXF\nCFW\nBE\n";
     assert_eq!(ops(german, German), ops(english, English));
     let found = ops(german, German);
-    assert_eq!(found[1..5], [Op::CallUnconditional, Op::CallConditional, Op::Jump(JumpIf::Always), Op::Jump(JumpIf::Rlo)].map(Some));
+    assert_eq!(
+        found[1..5],
+        [Op::CallUnconditional, Op::CallConditional, Op::Jump(JumpIf::Always), Op::Jump(JumpIf::Rlo)].map(Some)
+    );
     let (int, add, div) = (NumberType::Int, ArithOp::Add, ArithOp::Div);
-    assert_eq!(found[8..11], [Op::Arithmetic(add, int), Op::Compare(Relation::Eq, int), Op::Arithmetic(div, int)].map(Some));
+    assert_eq!(
+        found[8..11],
+        [Op::Arithmetic(add, int), Op::Compare(Relation::Eq, int), Op::Arithmetic(div, int)].map(Some)
+    );
 }
 
 #[test]
@@ -111,13 +122,27 @@ fn operands() {
 }
 
 #[test]
+fn the_set_is_found_by_vote() {
+    for (text, expected) in [
+        ("U E 0.0\n", German),
+        ("A I 0.0\n", English),
+        ("L MW 0\nL MW 2\nOW\n", German),
+        ("L FW 0\nL FW 2\nOW\n", English),
+        ("", German),
+    ] {
+        assert_eq!(super::vote(text), expected, "{text}");
+    }
+}
+
+#[test]
 fn comments() {
     let parse = clean("U E 0.0 ; ready\nBEB   fin de bloc\nSPA PB 3\tInitialisation du tour\n***   end\nL MW 0 // x\n");
     assert_eq!(parse.syntax().descendants().filter(|it| it.kind() == SyntaxKind::Instr).count(), 4);
     let comments = parse.syntax().descendant_tokens().filter(|it| it.kind() == SyntaxKind::Comment);
-    assert_eq!(comments.map(|it| it.text()).collect::<Vec<_>>(), [
-        "; ready", "fin", "de", "bloc", "Initialisation", "du", "tour", "end", "// x"
-    ]);
+    assert_eq!(
+        comments.map(|it| it.text()).collect::<Vec<_>>(),
+        ["; ready", "fin", "de", "bloc", "Initialisation", "du", "tour", "end", "// x"]
+    );
 }
 
 #[test]
@@ -129,8 +154,16 @@ fn blocks_and_segments() {
     assert_eq!(blocks.len(), 2);
     assert_eq!(blocks[0].children().filter_map(Network::cast).count(), 2);
     assert!(shape(blocks[1]).contains("(BlockAttribute NAME : INITG1)"));
-    assert!(shape(blocks[1]).contains("(VarName EIN)") && shape(blocks[1]).contains("(TypeRef E)"), "{}", shape(blocks[1]));
-    assert!(shape(blocks[1]).contains("(TypeRef BI)") && shape(blocks[1]).contains("(TypeRef W)"), "{}", shape(blocks[1]));
+    assert!(
+        shape(blocks[1]).contains("(VarName EIN)") && shape(blocks[1]).contains("(TypeRef E)"),
+        "{}",
+        shape(blocks[1])
+    );
+    assert!(
+        shape(blocks[1]).contains("(TypeRef BI)") && shape(blocks[1]).contains("(TypeRef W)"),
+        "{}",
+        shape(blocks[1])
+    );
     let listing = clean("U E 0.0\n***\nU E 0.1\n***\n");
     let root = Root::cast(listing.syntax()).and_then(|it| it.listings().next());
     assert_eq!(root.map(Listing::networks).into_iter().flatten().count(), 2);
@@ -164,7 +197,10 @@ fn faults_cost_their_line() {
     for (text, expected) in [
         ("XYZ E 0.0", "XYZ: unknown instruction `XYZ`"),
         ("U", "U: `U` needs a bit as its operand"),
-        ("AN E 0.0", "AN: unknown instruction `AN`; it is an international mnemonic, and this program is read with the German ones"),
+        (
+            "AN E 0.0",
+            "AN: unknown instruction `AN`; it is an international mnemonic, and this program is read with the German ones",
+        ),
         ("L KF", "L: `L` needs"),
         ("U E 0.0 )x", ""),
         ("BEB 5", "5: expected the end of the instruction"),

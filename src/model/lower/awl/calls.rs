@@ -37,8 +37,7 @@ impl Machine {
                 Some(None) => object,
                 None => {
                     // A block of STEP 5 finds its caller's open; organization blocks have no caller.
-                    let is_inherited =
-                        self.is_step5() && self.b.model.entity.block_kind() != Some(BlockKind::Ob);
+                    let is_inherited = self.is_step5() && self.b.model.entity.block_kind() != Some(BlockKind::Ob);
                     let is_first = !std::mem::replace(&mut self.open.reported, true);
                     if is_first && !is_inherited && self.b.is_reachable() {
                         let text = data.text.clone();

@@ -179,9 +179,7 @@ impl Machine {
             Err(error) if error.suggestion.is_none() && is_bare_symbol(text, mnemonics) => {
                 Ok(self.b.object(Object::symbol(text)))
             }
-            Err(error) => {
-                Err(self.no_address(text, error, range))
-            }
+            Err(error) => Err(self.no_address(text, error, range)),
         }
     }
 

@@ -3,8 +3,8 @@
 use rowan::TextRange;
 use smol_str::SmolStr;
 
-use super::{Machine, mnemonic_text};
 use super::operands::Operand;
+use super::{Machine, mnemonic_text};
 use crate::model::expr::ExprId;
 use crate::model::object::{Class, Type};
 use crate::model::unit::{OddityKind, Pin};

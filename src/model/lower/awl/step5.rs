@@ -61,11 +61,10 @@ impl Machine {
             return Operand::Object(self.b.object(Object { text: text.clone(), ..Object::symbol(name) }));
         }
         let kinds: Vec<SyntaxKind> = node.tokens().map(|it| it.kind()).collect();
-        let is_number =
-            kinds.iter().all(|it| matches!(it, SyntaxKind::Number | SyntaxKind::Plus | SyntaxKind::Minus));
-        let is_constant = node.first_token().is_some_and(|it| {
-            it.kind() == SyntaxKind::TypedConstant || crate::syntax::step5::is_constant(it.text())
-        });
+        let is_number = kinds.iter().all(|it| matches!(it, SyntaxKind::Number | SyntaxKind::Plus | SyntaxKind::Minus));
+        let is_constant = node
+            .first_token()
+            .is_some_and(|it| it.kind() == SyntaxKind::TypedConstant || crate::syntax::step5::is_constant(it.text()));
         if is_number || is_constant {
             // With the blanks, which part letters from characters.
             let written: SmolStr = if kinds.len() == 1 { node.text().trim().into() } else { text.clone() };
@@ -179,7 +178,12 @@ const TABLE_BITS: u32 = 4096;
 /// Whether a word that is no address may be a symbol: it has not the form of one, letters and a number.
 fn is_symbol(text: &str, error: &AddressError) -> bool {
     let letters = text.bytes().take_while(u8::is_ascii_alphabetic).count();
-    let is_numbered = text.as_bytes().get(letters).is_some_and(u8::is_ascii_digit);
+    let number = text.get(letters..).unwrap_or_default();
+    let is_numbered = number.starts_with(|it: char| it.is_ascii_digit());
+    // `T2f0`: an address has no letter behind its number.
+    if is_numbered && number.contains(|it: char| it.is_ascii_alphabetic()) {
+        return true;
+    }
     // Steps and transitions of a chart, by their usual names.
     let is_named = matches!(text.get(..letters), Some("X" | "S" | "Y")) && !text.contains('.');
     error.suggestion.is_none() && !is_numbered && letters > 1 || is_named || text.contains(|it: char| !it.is_ascii())
@@ -228,14 +232,16 @@ mod tests {
     }
 
     #[test]
+    fn words_that_are_no_addresses() {
+        // GRF:695: tables of the graphs 2 and 3.
+        assert_eq!(oddities("L KHFFFF\nT T3f0\nU X11\nS Sto\nU mémoire\n= A 4.0"), [""; 0]);
+    }
+
+    #[test]
     fn a_table_shares_memory_with_its_bits() {
         let model = model("U Tp[3]\n= M 1.0\nL KH 0000\nT Tp\nU Tp[3]\n= M 1.1\n");
-        let reads: Vec<u32> = model
-            .accesses
-            .iter()
-            .filter(|it| model.object(it.object).text == "Tp[3]")
-            .map(|it| it.version)
-            .collect();
+        let reads: Vec<u32> =
+            model.accesses.iter().filter(|it| model.object(it.object).text == "Tp[3]").map(|it| it.version).collect();
         assert_eq!(reads.len(), 2);
         assert_ne!(reads[0], reads[1], "the store changes the bit");
     }

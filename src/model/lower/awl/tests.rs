@@ -142,8 +142,7 @@ fn lost_loads_in_a_row_are_one_finding() {
 fn a_function_answers_in_accumulator_1() {
     assert_eq!(names("L MW0\nT MW2\nL MW4"), [""; 0]);
     assert_eq!(names("L MW0\nT MW2\nL MW4\nBE"), [""; 0]);
-    let parse =
-        crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
+    let parse = crate::syntax::awl::parse("ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\nL MW4\nBE\n", Mnemonics::German);
     let name = BlockName::Number(BlockKind::Ob, 1);
     let model = lower(parse.syntax(), Entity::Block { kind: BlockKind::Ob, name }, Language::Awl(Mnemonics::German));
     assert_eq!(model.oddities.len(), 1, "nobody called it");
