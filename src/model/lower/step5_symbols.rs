@@ -8,7 +8,7 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::object::step5;
 use crate::model::symbols::Symbol;
-use crate::syntax::{Language, Mnemonics, SyntaxKind, SyntaxNode};
+use crate::syntax::{Language, SyntaxKind, SyntaxNode};
 
 pub(super) fn lower(root: SyntaxNode<'_>, entity: Entity) -> UnitModel {
     let mut b = Builder::new(entity, Language::Step5Symbols, TextRange::default(), root.text_range().len());
@@ -17,8 +17,7 @@ pub(super) fn lower(root: SyntaxNode<'_>, entity: Entity) -> UnitModel {
         let (Some(operand), Some(name)) = (child(SyntaxKind::ObjectRef), child(SyntaxKind::VarName)) else { continue };
         let comment = node.tokens().find(|it| it.kind() == SyntaxKind::FreeText).map(|it| SmolStr::new(it.text()));
         let operand = operand.text();
-        // A table does not say its set; no operand is one of both that names two places.
-        let object = [Mnemonics::German, Mnemonics::English].into_iter().find_map(|it| step5::parse(&operand, it).ok());
+        let object = step5::parse_any(&operand).ok();
         let symbol = Symbol {
             name: name.text().trim().into(),
             object,
@@ -37,7 +36,9 @@ mod tests {
     use super::*;
     use crate::analysis::facts::UnitFacts;
     use crate::analysis::symbols::{SymbolTable, resolve};
+    use crate::model::entity::Family;
     use crate::model::object::Area;
+    use crate::syntax::Mnemonics;
 
     #[test]
     fn symbols_are_the_operands_that_they_name() {
@@ -46,7 +47,7 @@ mod tests {
             UnitFacts::new(&crate::model::lower::lower(parse.syntax(), text, Entity::Listing, language))
         };
         let table = facts("\tE 0.0\tSTART\tTaster\n\tMW 10\tZAHL\t\n\tF 1.0\tMERKER\t\n", Language::Step5Symbols);
-        let table = SymbolTable::new([&table]);
+        let table = SymbolTable::new(Family::Step5, [&table]);
         let code = facts("U -START\n= -MERKER\nL -Zahl\nT -OTHER\n", Language::Step5(Mnemonics::German));
         let resolved = resolve(&table, &[&code]);
         let area = |text: &str| {

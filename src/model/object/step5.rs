@@ -100,6 +100,15 @@ pub fn parse(operand: &str, mnemonics: Mnemonics) -> Result<Object, AddressError
     Ok(Object { text: SmolStr::new(&compact), class, ty, footprint, rights, extracted: false, indexed: false })
 }
 
+/// As [`parse`], of a text that does not say its mnemonic set: no operand names one place in one set and another in the
+/// other.
+///
+/// # Errors
+/// Those of [`parse`] in the German set.
+pub fn parse_any(operand: &str) -> Result<Object, AddressError> {
+    parse(operand, Mnemonics::German).or_else(|error| parse(operand, Mnemonics::English).map_err(|_| error))
+}
+
 fn read(compact: &str, mnemonics: Mnemonics) -> Result<(Class, Type, Footprint), AddressError> {
     let end = compact.bytes().position(|it| !it.is_ascii_alphabetic()).unwrap_or(compact.len());
     let (letters, rest) = compact.split_at(end);
