@@ -9,6 +9,7 @@ use smol_str::SmolStr;
 
 use super::chart::ChartFacts;
 use super::cost::UnitCost;
+use super::sequences::code::CodeFacts;
 use super::{conditions, gaps};
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
@@ -157,6 +158,8 @@ pub struct UnitFacts {
     pub commented: bool,
     /// Of a unit of PL7-2.
     pub cost: Option<Box<UnitCost>>,
+    /// Of Siemens blocks: what sequences are recovered from.
+    pub code: Option<Box<CodeFacts>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -282,6 +285,7 @@ impl UnitFacts {
             condition: None,
             commented: false,
             cost: UnitCost::new(model),
+            code: CodeFacts::new(model),
         }
     }
 

@@ -22,6 +22,7 @@ pub mod processing;
 pub mod program;
 pub mod reach;
 pub mod satisfy;
+pub mod sequences;
 pub mod size;
 pub mod symbols;
 

@@ -19,7 +19,7 @@ use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
     Argument, Call, Callee, Constant, DeadCause, Declaration, Formal, Hollow, HollowKind, Leave, LoopKind, Mode,
-    OddityKind, Pin, Section, StatementKind,
+    OddityKind, Pin, Pulse, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};
@@ -1031,12 +1031,15 @@ impl Machine {
             }
             Op::EdgePositive | Op::EdgeNegative => {
                 let was_fresh = self.fresh;
-                self.use_rlo(range, &mnemonic_text(instr));
-                if let Some((object, at)) = self.object_operand(instr) {
-                    self.b.touch(object, Mode::EdgeMemory, at);
-                    self.note_write(object);
-                }
+                let of = self.use_rlo(range, &mnemonic_text(instr));
                 let value = self.b.exprs().opaque();
+                if let Some((memory, at)) = self.object_operand(instr) {
+                    self.b.touch(memory, Mode::EdgeMemory, at);
+                    self.note_write(memory);
+                    let (statement, path) = (index(self.b.model.statements.len()), self.b.path());
+                    let rising = op == Op::EdgePositive;
+                    self.b.model.pulses.push(Pulse { value, of, memory, rising, statement, path });
+                }
                 self.or_base = None;
                 if was_fresh {
                     self.string = None;
