@@ -6,11 +6,13 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::code::How;
 use super::set_reset::FoundTransition;
 use super::trace::Trace;
 use super::{Sequence, SequenceTransition};
 use crate::analysis::satisfy::{Answer, Given};
-use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Replaced};
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
+use crate::model::object::Class;
 
 /// What a scan does otherwise than the rules say.
 #[derive(Debug, Clone)]
@@ -79,8 +81,13 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
             let out = of(&|it| has(&it.sources) && it.reset_of(step).is_some());
             let pairs = into.iter().flat_map(|a| out.iter().map(move |b| (*a, *b)));
             for (a, b) in pairs.filter(|it| it.0 != it.1).take(MOST_PAIRS) {
-                found.extend(self.skipped(step, a, b));
-                found.extend(self.lost(step, a, b));
+                // Where both steps are on in turn anyway, that one forgets the other is what happens.
+                let both = self.both_valid(a, b);
+                let one = self.lost(step, a, b, both).or_else(|| self.skipped(step, a, b));
+                found.extend(one.or_else(|| {
+                    let all = [&self.transition(a).sources[..], &self.transition(b).sources].concat();
+                    if self.sequence.is_fed { self.lost(step, a, b, vec![all]) } else { None }
+                }));
             }
             let leaving = of(&|it| has(&it.sources));
             let pairs = leaving.iter().flat_map(|a| leaving.iter().map(move |b| (*a, *b)));
@@ -112,6 +119,37 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
         found
     }
 
+    /// Words that are counted on in each scan while a step is on: by event, with the step.
+    pub fn counts(&mut self) -> Vec<(usize, usize)> {
+        let mut found = Vec::new();
+        for at in 0..self.trace.events.len() {
+            let event = &self.trace.events[at];
+            let Some(value) = event.value.filter(|_| event.how == How::Store) else { continue };
+            let Expr::Binary(Operator::Add | Operator::Sub, a, b) = *self.trace.exprs.get(value) else { continue };
+            let (object, when) = (event.object, event.when);
+            let is_own = |it: ExprId| matches!(*self.trace.exprs.get(it), Expr::Read { object: of, .. } if of == object);
+            let is_constant = |it: ExprId| matches!(self.trace.exprs.get(it), Expr::Int(_));
+            if !(is_own(a) && is_constant(b) || is_constant(a) && is_own(b)) {
+                continue;
+            }
+            let is_timer = |it: ObjectId| matches!(self.trace.object(it).class, Class::Timer | Class::Counter);
+            let step = self.trace.conjuncts(when).into_iter().find_map(|it| match *self.trace.exprs.get(it) {
+                Expr::Read { object, .. } => self.steps.get(&object).copied(),
+                _ => None,
+            });
+            let Some(step) = step.filter(|_| !self.trace.mentions(when, is_timer)) else { continue };
+            let wanted = [(self.trace.expand(when), true), (self.trace.next(when), true)];
+            let mut situations: Vec<Vec<usize>> =
+                self.valid.iter().flatten().filter(|it| it.contains(&step)).cloned().collect();
+            situations.sort_unstable();
+            situations.dedup();
+            if self.possible(situations, &wanted).is_some() {
+                found.push((at, step));
+            }
+        }
+        found
+    }
+
     fn transition(&self, at: usize) -> &'s FoundTransition {
         &self.sequence.transitions[at].found
     }
@@ -140,7 +178,13 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
     }
 
     /// The step is on, both transitions are crossed, and it goes off.
-    fn lost(&mut self, step: usize, first: usize, second: usize) -> Option<Deviation> {
+    fn lost(
+        &mut self,
+        step: usize,
+        first: usize,
+        second: usize,
+        situations: Vec<Vec<usize>>,
+    ) -> Option<Deviation> {
         let (a, b) = (self.transition(first), self.transition(second));
         let (on, off) = (a.set_of(step)?, b.reset_of(step)?);
         if !self.is_before(on, off) || self.is_apart(a, b) {
@@ -154,7 +198,7 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
             (self.trace.expand(b.condition), true),
             (end, false),
         ];
-        let situations = self.both_valid(first, second).into_iter().filter(|it| it.contains(&step)).collect();
+        let situations = situations.into_iter().filter(|it| it.contains(&step)).collect();
         let (situation, answer) = self.possible(situations, &wanted)?;
         Some(self.deviation(DeviationKind::Lost, step, first, second, situation, answer))
     }
@@ -273,8 +317,8 @@ fn situations(trace: &Trace<'_>, sequence: &Sequence<'_>) -> Vec<Vec<Vec<usize>>
             list.extend(all.map(|it| it.map(|it| it as usize).collect::<Vec<usize>>()));
         }
     }
-    for (list, transition) in valid.iter_mut().zip(&sequence.transitions) {
-        if list.is_empty() {
+    if sequence.starts.is_empty() {
+        for (list, transition) in valid.iter_mut().zip(&sequence.transitions) {
             list.push(transition.found.sources.clone());
         }
     }

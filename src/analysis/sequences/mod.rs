@@ -1,12 +1,13 @@
 //! Sequences that a program codes with bits: recovered as charts, and compared with the rules of evolution.
 //!
 //! [`code`] is what a unit tells. [`trace`] follows one scan of the program through its blocks; what each bit is at its end
-//! becomes a condition over what the bits were at its start. [`set_reset`] finds steps and transitions in it, [`judge`]
-//! asks where the scan does something else than the five rules say (GRF:128-152).
+//! becomes a condition over what the bits were at its start. [`set_reset`] and [`tables`] find steps and transitions in it,
+//! [`judge`] asks where the scan does something else than the five rules say (GRF:128-152).
 
 pub mod code;
 pub mod judge;
 pub mod set_reset;
+pub mod tables;
 pub mod trace;
 
 use self::code::How;
@@ -28,6 +29,8 @@ pub struct Sequences<'a> {
     /// The scan that they are coded in.
     pub trace: Option<Trace<'a>>,
     pub list: Vec<Sequence<'a>>,
+    /// What is wrong with tables.
+    pub faults: Vec<tables::Fault>,
 }
 
 /// A sequence as a chart.
@@ -43,6 +46,12 @@ pub struct Sequence<'a> {
     pub deviations: Vec<Deviation>,
     /// Pairs of transitions behind one step that a scan can cross both, by index, the earlier first.
     pub together: Vec<(usize, usize)>,
+    /// Words that are counted on in each scan while a step is on: the event, and the step.
+    pub counts: Vec<(usize, usize)>,
+    /// Several steps of one branch can be on together.
+    is_fed: bool,
+    /// The scan computes all steps from what they were when it began.
+    in_tables: bool,
     /// Objects that the receptivities name.
     objects: Vec<&'a Object>,
 }
@@ -82,7 +91,12 @@ impl<'a> Sequences<'a> {
             return Self::default();
         }
         let mut trace = Trace::of_scan(program);
-        let found = set_reset::find(&mut trace);
+        let mut found = set_reset::find(&mut trace);
+        let mut faults = Vec::new();
+        for it in tables::find(&mut trace) {
+            found.push(it.found);
+            faults.extend(it.faults);
+        }
         if found.is_empty() {
             return Self::default();
         }
@@ -90,11 +104,12 @@ impl<'a> Sequences<'a> {
         let mut list: Vec<Sequence<'a>> =
             found.into_iter().map(|it| Sequence::new(program, &mut trace, &mut startup, it)).collect();
         for it in &mut list {
+            let in_tables = it.in_tables;
             let mut judge = Judge::new(&mut trace, it);
-            let (deviations, together) = (judge.deviations(), judge.together());
-            (it.deviations, it.together) = (deviations, together);
+            let (deviations, together, counts) = (if in_tables { Vec::new() } else { judge.deviations() }, judge.together(), judge.counts());
+            (it.deviations, it.together, it.counts) = (deviations, together, counts);
         }
-        Self { trace: Some(trace), list }
+        Self { trace: Some(trace), list, faults }
     }
 
     /// A write of the scan.
@@ -171,7 +186,18 @@ impl<'a> Sequence<'a> {
         };
         let has_gaps = !program.complete || program.partial || steps.iter().any(is_hidden);
         let objects = trace.objects.clone();
-        Self { steps, transitions, starts, has_gaps, deviations: Vec::new(), together: Vec::new(), objects }
+        Self {
+            steps,
+            transitions,
+            starts,
+            has_gaps,
+            deviations: Vec::new(),
+            together: Vec::new(),
+            counts: Vec::new(),
+            is_fed: found.is_fed,
+            in_tables: found.in_tables,
+            objects,
+        }
     }
 
     /// The sequence as a chart, whose steps are numbered as [`Self::steps`].

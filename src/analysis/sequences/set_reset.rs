@@ -20,6 +20,10 @@ pub struct Found {
     pub transitions: Vec<FoundTransition>,
     /// Steps that the code puts without asking for one, those of one condition together: indices into `steps`.
     pub starts: Vec<Vec<usize>>,
+    /// Some of those comes in whatever other steps are on: several steps of one branch can be on together.
+    pub is_fed: bool,
+    /// The scan computes all steps from what they were when it began.
+    pub in_tables: bool,
 }
 
 /// Steps are indices into [`Found::steps`], events into [`Trace::events`].
@@ -83,10 +87,14 @@ pub fn find(trace: &mut Trace<'_>) -> Vec<Found> {
     let firings = firings(trace, &events, &candidates);
     // Resets that wait for the next step to be on.
     let mut handed: Vec<(ObjectId, ObjectId)> = firings.iter().flat_map(Firing::hands_over).collect();
-    let successors = by_successor(&firings);
-    for &(set, reset, from) in &successors {
+    let mut apart = by_successor(&firings);
+    for &(set, reset, from) in &apart {
         let to = firings[set].sets.iter().map(|it| it.0).find(|it| firings[reset].asks_for(*it));
         handed.extend(to.map(|to| (from, to)));
+    }
+    for (set, reset, from) in by_common_reset(trace, &firings) {
+        handed.extend(firings[set].sets.iter().map(|it| (from, it.0)).filter(|it| it.0 != it.1));
+        apart.push((set, reset, from));
     }
     handed.sort_unstable();
     handed.dedup();
@@ -113,7 +121,7 @@ pub fn find(trace: &mut Trace<'_>) -> Vec<Found> {
     for (at, steps) in components.into_iter().enumerate() {
         if is_sequence(steps.len(), &handed_in[at]) {
             let mine = std::mem::take(&mut firings_of[at]);
-            found.push(Builder::new(trace, &firings, &successors, steps).build(&mine));
+            found.push(Builder::new(trace, &firings, &apart, steps).build(&mine));
         }
     }
     found.sort_by_key(|it| it.transitions.iter().map(FoundTransition::event).min());
@@ -249,6 +257,29 @@ fn by_successor(firings: &[Firing]) -> Vec<(usize, usize, ObjectId)> {
     found
 }
 
+/// The same of resets under a condition that holds whenever that of the set does: branches set one by one, and the step
+/// before them reset below under all their conditions (GRF:260-265).
+fn by_common_reset(trace: &mut Trace<'_>, firings: &[Firing]) -> Vec<(usize, usize, ObjectId)> {
+    let mut setters: FxHashMap<ObjectId, Vec<usize>> = FxHashMap::default();
+    for (at, it) in firings.iter().enumerate().filter(|it| !it.1.sets.is_empty()) {
+        it.asks.iter().for_each(|(bit, _)| setters.entry(*bit).or_default().push(at));
+    }
+    let mut found = Vec::new();
+    for (reset, it) in firings.iter().enumerate().filter(|it| it.1.sets.is_empty()) {
+        for &(step, _) in it.resets.iter().filter(|step| it.asks_for(step.0)) {
+            for &set in setters.get(&step).into_iter().flatten() {
+                if firings[set].reset_of(step).is_none() {
+                    let [whole, part] = [firings[set].condition, it.condition].map(|it| trace.expand(it));
+                    if trace.solve(&[(whole, true), (part, false)]).is_never() {
+                        found.push((set, reset, step));
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
 /// Bits that hand over to one another, in the order of the program.
 fn components(handed: &[(ObjectId, ObjectId)]) -> Vec<Vec<ObjectId>> {
     let mut beside: FxHashMap<ObjectId, Vec<ObjectId>> = FxHashMap::default();
@@ -291,8 +322,8 @@ fn is_sequence(bits: usize, handed: &[(ObjectId, ObjectId)]) -> bool {
 struct Builder<'t, 'a> {
     trace: &'t mut Trace<'a>,
     firings: &'t [Firing],
-    /// See [`by_successor`].
-    successors: &'t [(usize, usize, ObjectId)],
+    /// Resets under another condition than the set: see [`by_successor`] and [`by_common_reset`].
+    apart: &'t [(usize, usize, ObjectId)],
     steps: Vec<ObjectId>,
     places: FxHashMap<ObjectId, usize>,
 }
@@ -302,12 +333,12 @@ impl<'t, 'a> Builder<'t, 'a> {
     fn new(
         trace: &'t mut Trace<'a>,
         firings: &'t [Firing],
-        successors: &'t [(usize, usize, ObjectId)],
+        apart: &'t [(usize, usize, ObjectId)],
         mut steps: Vec<ObjectId>,
     ) -> Self {
         steps.sort_by_key(|it| &trace.object(*it).footprint);
         let places = steps.iter().copied().zip(0..).collect();
-        Self { trace, firings, successors, steps, places }
+        Self { trace, firings, apart, steps, places }
     }
 
     /// `mine`: the firings that set or reset one of the steps.
@@ -326,6 +357,9 @@ impl<'t, 'a> Builder<'t, 'a> {
             }
             if asks.is_empty() {
                 found.starts.push(sets.iter().map(|it| it.0).collect());
+                let condition = self.trace.expand(firing.condition);
+                let names_step = self.trace.mentions(condition, |it| self.places.contains_key(&it));
+                found.is_fed |= !names_step && self.own(&firing.resets).is_empty();
                 continue;
             }
             let resets = self.own(&firing.resets);
@@ -361,10 +395,9 @@ impl<'t, 'a> Builder<'t, 'a> {
         own
     }
 
-    /// Resets of the steps that a firing asks for, under conditions that hold whenever its own does, or under the step that
-    /// it sets.
+    /// Resets of the steps that a firing asks for which stand under other conditions.
     fn elsewhere(
-        &mut self,
+        &self,
         firing: usize,
         asks: &[usize],
         resets: &[usize],
@@ -372,28 +405,15 @@ impl<'t, 'a> Builder<'t, 'a> {
     ) -> Vec<(usize, usize)> {
         let mut found: Vec<(usize, usize)> = Vec::new();
         for &at in resets {
-            let other = &self.firings[at];
-            let own: Vec<(usize, usize)> = self
-                .own(&other.resets)
-                .into_iter()
-                .filter(|it| asks.contains(&it.0) && !found.iter().any(|known| known.0 == it.0))
-                .collect();
-            let asks_too = own.iter().any(|it| other.asks_for(self.steps[it.0]));
-            let is_next = |it: &(usize, usize)| self.successors.contains(&(firing, at, self.steps[it.0]));
-            if own.iter().any(is_next) {
-                found.extend(own.into_iter().filter(|it| is_next(it)));
-                used.insert(at);
-            } else if asks_too && self.implies(self.firings[firing].condition, other.condition) {
-                found.extend(own);
-                used.insert(at);
+            for it in self.own(&self.firings[at].resets) {
+                let is_new = asks.contains(&it.0) && !found.iter().any(|known| known.0 == it.0);
+                if is_new && self.apart.contains(&(firing, at, self.steps[it.0])) {
+                    found.push(it);
+                    used.insert(at);
+                }
             }
         }
         found
-    }
-
-    fn implies(&mut self, a: ExprId, b: ExprId) -> bool {
-        let (a, b) = (self.trace.expand(a), self.trace.expand(b));
-        self.trace.solve(&[(a, true), (b, false)]).is_never()
     }
 
     fn transition(

@@ -586,12 +586,11 @@ impl<'a> Runner<'_, 'a> {
             .collect();
         let place = &self.table.objects[word.0 as usize].footprint;
         // All values are taken before any is given.
-        let given: Vec<(ObjectId, ExprId)> = bits
+        let given: Vec<(ObjectId, Option<ExprId>)> = bits
             .into_iter()
             .map(|bit| {
                 let offset = self.table.objects[bit.0 as usize].footprint.start.saturating_sub(place.start);
-                let found = value.and_then(|it| self.bit_of(it, offset, place.bits, path));
-                (bit, found.unwrap_or_else(|| self.trace.exprs.opaque()))
+                (bit, value.and_then(|it| self.bit_of(it, offset, place.bits, path)))
             })
             .collect();
         for (bit, value) in given {
@@ -599,7 +598,14 @@ impl<'a> Runner<'_, 'a> {
             let before = self.read(bit, path);
             let version = self.version(bit) + 1;
             self.now[bit.0 as usize] = version;
-            self.give_version(bit, version, before, value, path);
+            // A bit of a table keeps its name where it is read.
+            self.assigned.remove(&bit);
+            if let Some(value) = value {
+                self.give_version(bit, version, before, value, path);
+                if !matches!(self.trace.exprs.get(value), Expr::Bool(_)) {
+                    self.assigned.remove(&bit);
+                }
+            }
         }
     }
 

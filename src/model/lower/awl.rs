@@ -22,7 +22,7 @@ use crate::model::unit::{
     OddityKind, Pin, Pulse, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};
+use crate::syntax::awl::instruction::{ArithOp, Conversion, JumpIf, LogicOp, Op, Relation, Shift};
 use crate::syntax::{Language, Mnemonics, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
@@ -1133,6 +1133,13 @@ impl Machine {
                     self.use_loads(1);
                 }
                 self.opaque_result();
+            }
+            Op::Convert(Conversion::OnesComplementInt | Conversion::OnesComplementDint) => {
+                self.ignores_rlo(range, instr);
+                let value = self.accumulator(0);
+                let all = self.b.exprs().int(-1);
+                let value = self.b.exprs().binary(Operator::Xor, value, all);
+                self.result(value);
             }
             Op::Convert(_) | Op::Real(_) => {
                 self.ignores_rlo(range, instr);
