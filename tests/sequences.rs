@@ -250,6 +250,123 @@ fn blocks_in_the_order_of_their_calls() {
     assert_eq!(recovered(&all), [(names(&["M10.0", "M10.1", "M10.2"]), expected)]);
 }
 
+/// The blocks of a graph in tables (GRF:393-419, 489, 666-690), called in the order of GRF:1001-1009. Ts is MW10, Tp MW12, Tf0
+/// MW14, Tf1 MW16, Tt MW120, Td MW124, Ta MW126.
+struct Tables {
+    refresh: &'static str,
+    receptivities: &'static str,
+    steps: &'static str,
+    clear_forces: &'static str,
+    forces: &'static str,
+    result: &'static str,
+    outputs: &'static str,
+    calls: &'static str,
+}
+
+const RECEPTIVITIES_OF_TABLES: &str =
+    "L.0 T.MW120 / U.E0.0 S.M120.0 / U.E0.1 S.M120.1 / U.E0.2 S.M120.2 / U.E0.3 S.M120.3";
+
+/// Chapter V: the transitions one by one, with a divergence and a parallel one.
+const ONE_BY_ONE: Tables = Tables {
+    refresh: "L.MW10 T.MW12",
+    receptivities: RECEPTIVITIES_OF_TABLES,
+    steps: "L.0 T.MW126 T.MW124 / U.M120.0 U.M12.0 S.M126.1 S.M126.2 S.M124.0 / U.M120.1 U.M12.1 S.M126.3 S.M124.1 \
+            / U.M120.2 U.M12.2 S.M126.4 S.M124.2 / U.M120.3 U.M12.3 U.M12.4 S.M126.0 S.M124.3 S.M124.4 \
+            / L.MW124 INVI L.MW12 UW L.MW126 OW T.MW10",
+    clear_forces: "L.0 T.MW14 T.MW16",
+    forces: "U.E1.0 S.M14.1 U.E1.0 S.M16.0",
+    result: "L.MW14 INVI L.MW10 UW L.MW16 OW T.MW10",
+    outputs: "U.M10.1 =.A4.1 U.M10.2 =.A4.2",
+    calls: "CALL.FC_10 CALL.FC_13 CALL.FC_14 CALL.FC_15 CALL.FC_16 CALL.FC_17 CALL.FC_18",
+};
+
+/// Chapter IV: an equation a step.
+const STEP_BY_STEP: Tables = Tables {
+    steps: "/ U.M120.0 U.M12.0 =.M100.5 / UN.M100.5 U.M12.0 =.M100.6 / U.M12.3 U.M12.4 U.M120.3 =.M100.7 / U.M100.6 O.M100.7 =.M10.0 \
+            / UN.M120.1 U.M12.1 =.M100.6 / U.M12.0 U.M120.0 =.M100.7 / U.M100.6 O.M100.7 =.M10.1 \
+            / UN.M120.2 U.M12.2 =.M100.6 / U.M12.0 U.M120.0 =.M100.7 / U.M100.6 O.M100.7 =.M10.2 \
+            / U.M12.4 U.M120.3 =.M100.5 / UN.M100.5 U.M12.3 =.M100.6 / U.M12.1 U.M120.1 =.M100.7 / U.M100.6 O.M100.7 =.M10.3 \
+            / U.M12.3 U.M120.3 =.M100.5 / UN.M100.5 U.M12.4 =.M100.6 / U.M12.2 U.M120.2 =.M100.7 / U.M100.6 O.M100.7 =.M10.4",
+    ..ONE_BY_ONE
+};
+
+impl Tables {
+    fn blocks(&self) -> Vec<(&'static str, String)> {
+        let block = |number: u32, code: &str| {
+            format!("FUNCTION FC {number} : VOID\nBEGIN\nNETWORK\n{}END_FUNCTION\n", awl(code))
+        };
+        vec![
+            ("FC10", block(10, self.clear_forces)),
+            ("FC13", block(13, self.refresh)),
+            ("FC14", block(14, self.receptivities)),
+            ("FC15", block(15, self.steps)),
+            ("FC16", block(16, self.forces)),
+            ("FC17", block(17, self.result)),
+            ("FC18", block(18, self.outputs)),
+            ("OB1", ob(1, &awl(self.calls))),
+            ("OB100", ob(100, &awl("L.W#16#100 T.MW10 T.MW12"))),
+        ]
+    }
+
+    fn found(&self) -> Vec<&'static str> {
+        found(&self.blocks().into_iter().map(|it| it.1).collect::<String>())
+    }
+}
+
+#[test]
+fn tables() {
+    let expected = transitions(&[
+        (&["M10.0"], &["M10.1", "M10.2"]),
+        (&["M10.1"], &["M10.3"]),
+        (&["M10.2"], &["M10.4"]),
+        (&["M10.3", "M10.4"], &["M10.0"]),
+    ]);
+    // Steps that no place of the program reads go by another table.
+    let as_steps = |it: Vec<(Vec<String>, Transitions)>| -> Vec<Transitions> {
+        let step = |it: &String| it.replace("M12.", "M10.").replace("M126.", "M10.").replace("M124.", "M10.");
+        let all = |it: Vec<String>| it.iter().map(step).collect::<Vec<String>>();
+        it.into_iter().map(|it| it.1.into_iter().map(|it| (all(it.0), all(it.1))).collect()).collect()
+    };
+    for tables in [&ONE_BY_ONE, &STEP_BY_STEP] {
+        assert_eq!(as_steps(recovered(&tables.blocks())), [expected.clone()]);
+        assert_eq!(tables.found(), [""; 0]);
+    }
+}
+
+/// Lines that the document asks for, each left out or changed.
+#[test]
+fn each_line_of_the_tables_counts() {
+    let check = |tables: Tables, codes: &[&str]| assert_eq!(tables.found(), codes, "{}", tables.steps);
+    for base in [|| ONE_BY_ONE, || STEP_BY_STEP] {
+        // No copy; one after the steps; one more write.
+        check(Tables { refresh: "NOP.0", ..base() }, &["Q006"]);
+        let late = "CALL.FC_10 CALL.FC_14 CALL.FC_15 CALL.FC_13 CALL.FC_16 CALL.FC_17 CALL.FC_18";
+        check(Tables { calls: late, ..base() }, &["Q006"]);
+        check(Tables { outputs: "U.M10.1 =.A4.1 U.E7.0 S.M12.1", ..base() }, &["Q006"]);
+        // The receptivities, and the forces, stay.
+        let kept = "/ U.E0.0 S.M120.0 / U.E0.1 S.M120.1 / U.E0.2 S.M120.2 / U.E0.3 S.M120.3 / L.MW120 T.MW122";
+        check(Tables { receptivities: kept, ..base() }, &["Q007"]);
+        check(Tables { clear_forces: "L.0 T.MW14", ..base() }, &["Q007"]);
+        check(Tables { clear_forces: "L.0 T.MW16", ..base() }, &["Q007"]);
+        // The forces to 0 win.
+        check(Tables { result: "L.MW10 L.MW16 OW L.MW14 INVI UW T.MW10", ..base() }, &["Q010"]);
+        // The outputs before the forces, before the steps.
+        let early = "CALL.FC_10 CALL.FC_13 CALL.FC_14 CALL.FC_15 CALL.FC_16 CALL.FC_18 CALL.FC_17";
+        check(Tables { calls: early, ..base() }, &["Q008"]);
+    }
+    let steps = |from: &str, to: &str| -> &'static str { ONE_BY_ONE.steps.replace(from, to).leak() };
+    check(Tables { steps: steps("T.MW126 T.MW124", "T.MW126"), ..ONE_BY_ONE }, &["Q007"]);
+    check(Tables { steps: steps("T.MW126 T.MW124", "T.MW124"), ..ONE_BY_ONE }, &["Q007"]);
+    // A branch is left open, or closed as alternatives: a defect of the chart.
+    let open = steps("U.M12.3 U.M12.4 S.M126.0 S.M124.3 S.M124.4", "U.M12.3 S.M126.0 S.M124.3");
+    assert!(Tables { steps: open, ..ONE_BY_ONE }.found().contains(&"Q012"));
+    // A branch that begins by itself, where nothing is computed while nothing is active.
+    let source = steps("/ L.MW124 INVI", "/ U.E0.4 S.M126.5 / U.E0.5 U.M12.5 S.M124.5 / L.MW124 INVI");
+    assert_eq!(Tables { steps: source, ..ONE_BY_ONE }.found(), [""; 0]);
+    let skipped: &'static str = format!("L.MW12 L.0 ==I BEB / {source}").leak();
+    check(Tables { steps: skipped, ..ONE_BY_ONE }, &["Q011"]);
+}
+
 /// A chart that is put together correctly.
 #[derive(Debug, Clone)]
 enum Block {

@@ -93,7 +93,7 @@ impl<'a> Sequences<'a> {
         let mut trace = Trace::of_scan(program);
         let mut found = set_reset::find(&mut trace);
         let mut faults = Vec::new();
-        for it in tables::find(&mut trace) {
+        for it in tables::find(program, &mut trace) {
             found.push(it.found);
             faults.extend(it.faults);
         }

@@ -11,8 +11,10 @@ use super::code::How;
 use super::set_reset::{Found, FoundTransition};
 use super::trace::{Event, Trace};
 use crate::analysis::Site;
+use crate::analysis::program::ProgramIndex;
 use crate::model::expr::{Comparison, Expr, ExprId, Exprs, ObjectId, Operator};
-use crate::model::object::Footprint;
+use crate::model::object::{Class, Footprint};
+use crate::model::unit::{Mode, Pin};
 
 /// A sequence in tables.
 #[derive(Debug)]
@@ -40,6 +42,8 @@ pub enum FaultKind {
     ForcedOff,
     /// A transition that waits for no step is passed by while no step is active.
     PassedBy,
+    /// What the steps drive is computed before the steps are.
+    Misplaced,
 }
 
 /// The words of a sequence: activities of this scan and of the one before; activations and deactivations, where they are.
@@ -53,7 +57,7 @@ struct Words {
 }
 
 /// All sequences in tables of a scan.
-pub fn find(trace: &mut Trace<'_>) -> Vec<Table> {
+pub fn find(program: &ProgramIndex<'_>, trace: &mut Trace<'_>) -> Vec<Table> {
     let mut words: Vec<Words> = Vec::new();
     for (at, event) in trace.events.iter().enumerate().filter(|it| it.1.how == How::Store) {
         let found = event.value.and_then(|it| evolution(trace, it));
@@ -67,7 +71,7 @@ pub fn find(trace: &mut Trace<'_>) -> Vec<Table> {
         }
     }
     words.extend(by_step(trace));
-    words.into_iter().filter_map(|it| Graph { trace, words: it }.build()).collect()
+    words.into_iter().filter_map(|it| Graph { trace, words: it }.build(program)).collect()
 }
 
 /// A word as one of an operation.
@@ -199,7 +203,7 @@ impl Graph<'_, '_> {
         self.rank(&self.words.before, bit).or_else(|| self.rank(&self.words.now, bit))
     }
 
-    fn build(mut self) -> Option<Table> {
+    fn build(self, program: &ProgramIndex<'_>) -> Option<Table> {
         let crossed = if self.words.on.is_some() { self.one_by_one() } else { self.step_by_step() };
         let mut ranks: Vec<u32> = crossed
             .iter()
@@ -211,7 +215,8 @@ impl Graph<'_, '_> {
         if !is_chart || ranks.len() < 2 {
             return None;
         }
-        let faults = self.faults(&crossed);
+        let mut faults = self.faults(&crossed);
+        faults.extend(self.misplaced(program));
         let bit = |rank: u32| {
             let words = [&self.words.now, &self.words.before].into_iter().chain(&self.words.on).chain(&self.words.off);
             let mut places = words.map(|it| Footprint::new(it.area.clone(), it.start + rank, 1));
@@ -303,10 +308,14 @@ impl Graph<'_, '_> {
                     ..Crossed::default()
                 });
                 it.sets.push((target, at));
-                it.resets.extend(sources.into_iter().map(|it| (it, at)).filter(|new| !it.resets.contains(new)));
+                it.resets.extend(sources.into_iter().map(|it| (it, at)));
             }
         }
         let mut crossed: Vec<Crossed> = crossed.into_values().collect();
+        for it in &mut crossed {
+            it.resets.sort_unstable();
+            it.resets.dedup_by_key(|it| it.0);
+        }
         crossed.sort_by_key(|it| it.sets.first().map(|it| it.1));
         crossed
     }
@@ -397,14 +406,14 @@ impl Graph<'_, '_> {
     fn not_cleared(&self, table: &Footprint, equation: Option<usize>) -> Option<Fault> {
         let events = || self.trace.events.iter().enumerate();
         let place = |it: &Event| &self.trace.object(it.object).footprint;
+        let is_zero = |it: &Event| it.value.is_some_and(|it| matches!(self.trace.exprs.get(it), Expr::Int(0)));
         let is_mark = |it: &Event| match it.how {
             How::Set => true,
-            How::Store => it.when != Exprs::TRUE,
+            How::Store => it.when != Exprs::TRUE && !is_zero(it),
             _ => false,
         };
         let first = events().find(|it| place(it.1).overlaps(table) && is_mark(it.1))?;
         let last = events().filter(|it| place(it.1).overlaps(table) && is_mark(it.1)).last()?.0;
-        let is_zero = |it: &Event| it.value.is_some_and(|it| matches!(self.trace.exprs.get(it), Expr::Int(0)));
         let clears = |it: &(usize, &Event)| it.1.how == How::Store && is_zero(it.1) && place(it.1).contains(table);
         let is_cleared = events().filter(clears).any(|it| it.0 < first.0 || it.0 > equation.unwrap_or(last).max(last));
         let by_bits = |it: &(usize, &Event)| {
@@ -419,11 +428,10 @@ impl Graph<'_, '_> {
         Some(Fault { kind: FaultKind::NotCleared, site, message, related: late.into_iter().collect() })
     }
 
-    /// The equation of forces (GRF:634-680).
-    fn forcing(&self, at: usize, event: &Event) -> Vec<Fault> {
+    /// The equation of forces: the tables of forces to 1 and to 0, and whether the latter wins.
+    fn forces(&self, value: ExprId) -> Option<(ObjectId, ObjectId, bool)> {
         let is_now = |it: ObjectId| self.trace.object(it).footprint == self.words.now;
         let word_of = |it: ExprId| word(self.trace, it);
-        let Some(value) = event.value else { return Vec::new() };
         // (T AND NOT F0) OR F1
         let good = operands(self.trace, value, Operator::Or).and_then(|all| {
             all.into_iter().find_map(|(one, other)| {
@@ -437,16 +445,19 @@ impl Graph<'_, '_> {
             let one = all.into_iter().find_map(|(t, one)| is_now(word_of(t)?).then_some(word_of(one)?))?;
             Some((one, zero))
         });
+        good.map(|it| (it.0, it.1, false)).or(bad.map(|it| (it.0, it.1, true)))
+    }
+
+    fn forcing(&self, at: usize, event: &Event) -> Vec<Fault> {
         let mut faults = Vec::new();
-        if let Some((one, zero)) = bad {
+        let Some((one, zero, is_off)) = event.value.and_then(|it| self.forces(it)) else { return faults };
+        if is_off {
             let text = |it: ObjectId| format!("`{}`", self.trace.object(it).text);
             let message = format!("a force to 0 in {} wins over one to 1 in {}", text(zero), text(one));
             faults.push(Fault { kind: FaultKind::ForcedOff, site: event.site, message, related: Vec::new() });
         }
-        if let Some((one, zero)) = good.or(bad) {
-            for it in [one, zero] {
-                faults.extend(self.not_cleared(&self.trace.object(it).footprint, Some(at)));
-            }
+        for it in [one, zero] {
+            faults.extend(self.not_cleared(&self.trace.object(it).footprint, Some(at)));
         }
         faults
     }
@@ -471,5 +482,62 @@ impl Graph<'_, '_> {
             self.text(&self.words.before)
         );
         asks.then_some(Fault { kind: FaultKind::PassedBy, site: event.site, message, related: Vec::new() })
+    }
+
+    /// Blocks in another order than graphs, forces, counters, timers, outputs (GRF:181-193, 618-630).
+    fn misplaced(&self, program: &ProgramIndex<'_>) -> Vec<Fault> {
+        const NAMES: [&str; 5] = ["steps", "forces", "counters", "timers", "outputs"];
+        let mut parts: FxHashMap<u32, FxHashSet<usize>> = FxHashMap::default();
+        for event in &self.trace.events {
+            if self.trace.object(event.object).footprint.overlaps(&self.words.now) {
+                let is_force = event.value.is_some_and(|it| self.forces(it).is_some());
+                parts.entry(event.unit).or_default().insert(usize::from(is_force));
+            }
+        }
+        for uses in &program.objects {
+            let reads_step = uses.object.footprint.overlaps(&self.words.now);
+            for it in uses.with_mode(|it| it == Mode::Read).filter(|_| reads_step) {
+                let facts = program.units[it.unit as usize];
+                if parts.get(&it.unit).is_some_and(|it| it.contains(&0) || it.contains(&1)) {
+                    continue;
+                }
+                for other in &facts.uses {
+                    let is_output = || {
+                        let object = facts.objects.get(other.object as usize);
+                        object.is_some_and(|it| it.object.class == Class::Output)
+                    };
+                    let part = match other.mode {
+                        Mode::Drive(Pin::Up | Pin::Down) => 2,
+                        Mode::Drive(Pin::Start) => 3,
+                        mode if mode.writes() && is_output() => 4,
+                        _ => continue,
+                    };
+                    parts.entry(it.unit).or_default().insert(part);
+                }
+            }
+        }
+        // A block that does several of these has no one place.
+        let alone = parts.into_iter().filter_map(|(unit, parts)| {
+            let mut parts = parts.into_iter();
+            let part = parts.next()?;
+            (parts.next().is_none() && !program.is_startup(unit)).then_some((program.order[unit as usize], unit, part))
+        });
+        let mut blocks: Vec<(u32, u32, usize)> = alone.collect();
+        blocks.sort_unstable();
+        let place = |unit: u32| {
+            let call = program.callers[unit as usize].first().and_then(|it| program.calls.get(*it as usize));
+            call.map_or(ProgramIndex::heading(unit), |it| it.site())
+        };
+        let mut faults = Vec::new();
+        for (at, &(_, unit, part)) in blocks.iter().enumerate() {
+            let Some(&(_, late, before)) = blocks[at..].iter().find(|it| it.2 < part) else { continue };
+            faults.push(Fault {
+                kind: FaultKind::Misplaced,
+                site: place(unit),
+                message: format!("the {} are computed before the {} are", NAMES[part], NAMES[before]),
+                related: vec![(place(late), format!("the {} are computed here", NAMES[before]))],
+            });
+        }
+        faults
     }
 }
