@@ -169,10 +169,21 @@ fn by_step(trace: &Trace<'_>) -> Vec<Words> {
             let area = places.map(|it| it.area.clone()).next()?;
             let bits = (last / 8 * 8 + 8).checked_sub(first)?;
             let before = u32::try_from(i64::from(first) + distance).ok()?;
-            let (now, before) = (Footprint::new(area.clone(), first, bits), Footprint::new(area, before, bits));
+            let (now, before) = whole(trace, Footprint::new(area.clone(), first, bits), Footprint::new(area, before, bits));
             (!now.overlaps(&before)).then_some(Words { now, before, on: None, off: None, equation: None })
         })
         .collect()
+}
+
+/// The words around two stretches of one size that the program names as such, else the stretches.
+fn whole(trace: &Trace<'_>, now: Footprint, before: Footprint) -> (Footprint, Footprint) {
+    let words = || trace.objects.iter().map(|it| &it.footprint).filter(|it| it.bits > 1);
+    let pair = words().filter(|it| it.contains(&now)).find_map(|word| {
+        let start = (before.start + word.start).checked_sub(now.start)?;
+        let other = Footprint::new(before.area.clone(), start, word.bits);
+        words().any(|it| *it == other).then(|| (word.clone(), other))
+    });
+    pair.unwrap_or((now, before))
 }
 
 struct Graph<'t, 'a> {
