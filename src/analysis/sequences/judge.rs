@@ -10,7 +10,7 @@ use super::code::How;
 use super::set_reset::FoundTransition;
 use super::trace::Trace;
 use super::{Sequence, SequenceTransition};
-use crate::analysis::satisfy::{Answer, Given};
+use crate::analysis::conditions::{Answer, Given};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
 use crate::model::object::Class;
 

@@ -175,6 +175,7 @@ impl<'a> Sequence<'a> {
                     sources: Vec::new(),
                     targets: Vec::new(),
                     receptivity: receptivity.map_or(FactReceptivity::Unread, FactReceptivity::Guard),
+                    room: None,
                     anchor: site.anchor,
                 },
                 found: it.clone(),

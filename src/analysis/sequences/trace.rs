@@ -11,7 +11,7 @@ use smol_str::SmolStr;
 use super::code::{Act, How};
 use crate::analysis::Site;
 use crate::analysis::program::{Context, ProgramIndex};
-use crate::analysis::satisfy::{Answer, Space};
+use crate::analysis::conditions::{Answer, Objects, Space};
 use crate::model::entity::{BlockName, Family};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
 use crate::model::object::{Area, Class, Footprint, Object, Type};
@@ -243,7 +243,7 @@ impl<'a> Trace<'a> {
     }
 
     pub fn space(&self) -> Space<'_> {
-        Space { exprs: &self.exprs, objects: &self.objects, family: self.family }
+        Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family, known: &[] }
     }
 
     pub fn solve(&self, wanted: &[(ExprId, bool)]) -> Answer {
