@@ -98,8 +98,11 @@ fn forms_of_the_document() {
     // The operands in any order, the reset first, one network for all.
     judged("U.E0.0 U.M10.0 R.M10.0 S.M10.1 U.E0.1 U.M10.1 R.M10.1 S.M10.2 U.E0.2 U.M10.2 R.M10.2 S.M10.0", &["Q001"]);
     // Set and reset in networks of their own.
-    judged("/ U.M10.0 U.E0.0 S.M10.1 / U.M10.0 U.E0.0 R.M10.0 / U.M10.1 U.E0.1 S.M10.2 / U.M10.1 U.E0.1 R.M10.1 / \
-            U.M10.2 U.E0.2 S.M10.0 / U.M10.2 U.E0.2 R.M10.2", &["Q001"]);
+    judged(
+        "/ U.M10.0 U.E0.0 S.M10.1 / U.M10.0 U.E0.0 R.M10.0 / U.M10.1 U.E0.1 S.M10.2 / U.M10.1 U.E0.1 R.M10.1 / \
+            U.M10.2 U.E0.2 S.M10.0 / U.M10.2 U.E0.2 R.M10.2",
+        &["Q001"],
+    );
     // 3.2: a shift register; its first step stays on.
     let start = "U.E0.0 FP.M9.0 =.M9.1 ";
     let (a, b, c, d) = (
@@ -117,7 +120,12 @@ fn forms_of_the_document() {
     judged(&[start, first, b, c, d, a].concat(), &["Q003", "Q003"]);
     // 3.3, case 1: branches that come together.
     let rest = "/ U.M10.0 U.E1.0 UN.E1.1 S.M10.1 R.M10.0 / U.M10.0 U.E1.1 UN.E1.0 S.M10.2 R.M10.0 ";
-    judged(&format!("/ U.M10.3 U.E0.3 UN.E1.0 UN.E1.1 S.M10.0 R.M10.3 / U.E0.1 U.M10.1 S.M10.3 R.M10.1 / U.E0.2 U.M10.2 S.M10.3 R.M10.2 {rest}"), &[]);
+    judged(
+        &format!(
+            "/ U.M10.3 U.E0.3 UN.E1.0 UN.E1.1 S.M10.0 R.M10.3 / U.E0.1 U.M10.1 S.M10.3 R.M10.1 / U.E0.2 U.M10.2 S.M10.3 R.M10.2 {rest}"
+        ),
+        &[],
+    );
     // Cases 2 and 3: parallel branches.
     judged(
         "/ U.M10.3 U.M10.4 U.E0.5 UN.E0.0 S.M10.0 R.M10.3 R.M10.4 / U.E0.1 U.M10.1 S.M10.3 R.M10.1 / U.E0.2 U.M10.2 S.M10.4 R.M10.2 \
@@ -126,7 +134,10 @@ fn forms_of_the_document() {
     );
     // Case 4: three networks; both branches are taken, which is a defect of the chart, and is coded as the rules say.
     let back = "/ U.M10.1 U.E1.1 UN.E0.1 UN.E0.2 S.M10.0 R.M10.1 / U.M10.2 U.E1.2 UN.E0.1 UN.E0.2 S.M10.0 R.M10.2 ";
-    judged(&format!("{back} / U.E0.1 U.M10.0 S.M10.1 / U.E0.2 U.M10.0 S.M10.2 / U( U.E0.1 O.E0.2 ) U.M10.0 R.M10.0"), &["Q012"]);
+    judged(
+        &format!("{back} / U.E0.1 U.M10.0 S.M10.1 / U.E0.2 U.M10.0 S.M10.2 / U( U.E0.1 O.E0.2 ) U.M10.0 R.M10.0"),
+        &["Q012"],
+    );
     judged(&format!("{back} / U.E0.1 U.M10.0 S.M10.1 R.M10.0 / U.E0.2 U.M10.0 S.M10.2 R.M10.0"), &["Q004"]);
     judged(&format!("{back} / U.E0.1 U.M10.0 S.M10.1 R.M10.0 / U.E0.2 UN.E0.1 U.M10.0 S.M10.2 R.M10.0"), &[]);
     // 3.4: two steps.
@@ -159,8 +170,18 @@ fn steps_that_are_not_passed() {
     assert_eq!(found(&text), [""; 0]);
     // Edges of different buttons come in different scans; one and the same edge does not.
     let edges = "/ U.E0.0 FP.M9.0 =.M9.1 / U.E0.1 FP.M9.2 =.M9.3 / U.E0.2 FP.M9.4 =.M9.5 ";
-    judged(&format!("{edges} / U.M10.0 U.M9.1 S.M10.1 R.M10.0 / U.M10.1 U.M9.3 S.M10.2 R.M10.1 / U.M10.2 U.M9.5 S.M10.0 R.M10.2"), &[]);
-    judged(&format!("{edges} / U.M10.0 U.M9.1 S.M10.1 R.M10.0 / U.M10.1 U.M9.1 S.M10.2 R.M10.1 / U.M10.2 U.M9.5 S.M10.0 R.M10.2"), &["Q001"]);
+    judged(
+        &format!(
+            "{edges} / U.M10.0 U.M9.1 S.M10.1 R.M10.0 / U.M10.1 U.M9.3 S.M10.2 R.M10.1 / U.M10.2 U.M9.5 S.M10.0 R.M10.2"
+        ),
+        &[],
+    );
+    judged(
+        &format!(
+            "{edges} / U.M10.0 U.M9.1 S.M10.1 R.M10.0 / U.M10.1 U.M9.1 S.M10.2 R.M10.1 / U.M10.2 U.M9.5 S.M10.0 R.M10.2"
+        ),
+        &["Q001"],
+    );
     // Numbers that exclude each other.
     judged(
         "/ U.M10.0 U( L.MW20 L.1 ==I ) S.M10.1 R.M10.0 / U.M10.1 U( L.MW20 L.2 ==I ) S.M10.2 R.M10.1 / U.M10.2 U( L.MW20 L.3 ==I ) S.M10.0 R.M10.2",
@@ -328,9 +349,28 @@ fn tables() {
         it.into_iter().map(|it| it.1.into_iter().map(|it| (all(it.0), all(it.1))).collect()).collect()
     };
     for tables in [&ONE_BY_ONE, &STEP_BY_STEP] {
-        assert_eq!(as_steps(recovered(&tables.blocks())), [expected.clone()]);
+        assert_eq!(as_steps(recovered(&tables.blocks())), std::slice::from_ref(&expected));
         assert_eq!(tables.found(), [""; 0]);
     }
+}
+
+/// Activations and deactivations are common to all graphs (GRF:1120): each clears them.
+#[test]
+fn graphs_share_their_tables() {
+    let graph = |now: u32, before: u32, input: u32| {
+        format!(
+            "L.MW{now} T.MW{before} / L.0 T.MW126 T.MW124 / U.E{input}.0 U.M{before}.0 S.M126.1 S.M124.0 / U.E{input}.1 U.M{before}.1 \
+             S.M126.2 S.M124.1 / U.E{input}.2 U.M{before}.2 S.M126.0 S.M124.2 / L.MW124 INVI L.MW{before} UW L.MW126 OW T.MW{now} "
+        )
+    };
+    let start = ob(100, &awl("L.W#16#100 T.MW10 T.MW12 T.MW20 T.MW22"));
+    let both = |first: &str, second: &str| ob(1, &awl(&[first, " / ", second].concat()));
+    let (first, second) = (graph(10, 12, 0), graph(20, 22, 1));
+    assert_eq!(found(&(both(&first, &second) + &start)), [""; 0]);
+    let shapes = recovered(&[("OB1", both(&first, &second)), ("OB100", start.clone())]);
+    assert_eq!(shapes.iter().map(|it| (it.0.len(), it.1.len())).collect::<Vec<_>>(), [(3, 3), (3, 3)]);
+    let kept = second.replace("/ L.0 T.MW126 T.MW124 ", "");
+    assert_eq!(found(&(both(&first, &kept) + &start)), ["Q007", "Q007"]);
 }
 
 /// Lines that the document asks for, each left out or changed.

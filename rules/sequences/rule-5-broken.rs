@@ -14,8 +14,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             }
             seen.push(found.step);
             let step = sequence.name(found.step);
-            let message =
-                format!("step `{step}` goes off though it is activated in the same scan {}", found.when());
+            let message = format!("step `{step}` goes off though it is activated in the same scan {}", found.when());
             sink.report(reset, message)
                 .label("undoes the activation")
                 .related_all(cx.sequences().set_of(sequence, found).map(|it| (it, format!("activates `{step}`"))))

@@ -323,9 +323,7 @@ impl<'p, 'a> Net<'p, 'a> {
                 let guard = match &crossed.it.receptivity {
                     FactReceptivity::Missing => Guarded::Never,
                     FactReceptivity::Unread => Guarded::Unknown,
-                    FactReceptivity::Guard(guard) => {
-                        Guarded::By(exprs.import(guard, |it| id(crossed.unit, it)))
-                    }
+                    FactReceptivity::Guard(guard) => Guarded::By(exprs.import(guard, |it| id(crossed.unit, it))),
                 };
                 crossings.push(Crossing { chart, transition, from, to, guard, route: Route::default() });
             }

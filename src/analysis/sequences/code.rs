@@ -70,12 +70,16 @@ impl CodeFacts {
             let write = |how, access: u32, value| {
                 let access = model.accesses.get(access as usize)?;
                 let object = model.object(access.object);
-                let is_kept = match (how, object.class) {
-                    (_, Class::Memory | Class::Data | Class::InstanceData | Class::Symbol) => true,
-                    (_, Class::LocalName | Class::LocalData) => true,
-                    (How::Set | How::Reset, Class::Output) => true,
-                    _ => false,
-                };
+                // Outputs are no steps, and conditions seldom read them.
+                let is_kept = matches!(
+                    object.class,
+                    Class::Memory
+                        | Class::Data
+                        | Class::InstanceData
+                        | Class::Symbol
+                        | Class::LocalName
+                        | Class::LocalData
+                );
                 is_kept.then_some(Drawn::Write(how, access.object.0, access.anchor, statement.network, path, value))
             };
             let act = match statement.kind {

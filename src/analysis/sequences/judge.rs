@@ -54,19 +54,23 @@ pub enum DeviationKind {
 const MOST_SITUATIONS: usize = 64;
 const MOST_PAIRS: usize = 256;
 
+/// So many questions about one sequence are asked of the solver.
+const MOST_QUESTIONS: usize = 4000;
+
 pub struct Judge<'s, 't, 'a> {
     trace: &'t mut Trace<'a>,
     sequence: &'s Sequence<'a>,
     /// By transition: the situations in which it is valid.
     valid: Vec<Vec<Vec<usize>>>,
     steps: FxHashMap<ObjectId, usize>,
+    questions: usize,
 }
 
 impl<'s, 't, 'a> Judge<'s, 't, 'a> {
     pub fn new(trace: &'t mut Trace<'a>, sequence: &'s Sequence<'a>) -> Self {
         let valid = situations(trace, sequence);
         let steps = sequence.steps.iter().map(|it| it.id).zip(0..).collect();
-        Self { trace, sequence, valid, steps }
+        Self { trace, sequence, valid, steps, questions: MOST_QUESTIONS }
     }
 
     pub fn deviations(&mut self) -> Vec<Deviation> {
@@ -127,7 +131,8 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
             let Some(value) = event.value.filter(|_| event.how == How::Store) else { continue };
             let Expr::Binary(Operator::Add | Operator::Sub, a, b) = *self.trace.exprs.get(value) else { continue };
             let (object, when) = (event.object, event.when);
-            let is_own = |it: ExprId| matches!(*self.trace.exprs.get(it), Expr::Read { object: of, .. } if of == object);
+            let is_own =
+                |it: ExprId| matches!(*self.trace.exprs.get(it), Expr::Read { object: of, .. } if of == object);
             let is_constant = |it: ExprId| matches!(self.trace.exprs.get(it), Expr::Int(_));
             if !(is_own(a) && is_constant(b) || is_constant(a) && is_own(b)) {
                 continue;
@@ -169,8 +174,7 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
         }
         let end = self.end(step);
         let wanted = [(self.trace.expand(a.condition), true), (self.trace.expand(b.condition), true), (end, false)];
-        let situations: Vec<Vec<usize>> =
-            self.valid[first].iter().filter(|it| !it.contains(&step)).cloned().collect();
+        let situations: Vec<Vec<usize>> = self.valid[first].iter().filter(|it| !it.contains(&step)).cloned().collect();
         let (situation, answer) = self.possible(situations, &wanted)?;
         let is_undone = b.targets == a.sources && a.targets == b.sources && a.targets.len() == 1;
         let kind = if is_undone { DeviationKind::Undone } else { DeviationKind::Skipped };
@@ -178,13 +182,7 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
     }
 
     /// The step is on, both transitions are crossed, and it goes off.
-    fn lost(
-        &mut self,
-        step: usize,
-        first: usize,
-        second: usize,
-        situations: Vec<Vec<usize>>,
-    ) -> Option<Deviation> {
+    fn lost(&mut self, step: usize, first: usize, second: usize, situations: Vec<Vec<usize>>) -> Option<Deviation> {
         let (a, b) = (self.transition(first), self.transition(second));
         let (on, off) = (a.set_of(step)?, b.reset_of(step)?);
         if !self.is_before(on, off) || self.is_apart(a, b) {
@@ -277,6 +275,7 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
             if !seen.insert(fixed.clone()) {
                 continue;
             }
+            self.questions = self.questions.checked_sub(1)?;
             let wanted: Vec<(ExprId, bool)> = fixed.into_iter().zip(wanted.iter().map(|it| it.1)).collect();
             let answer = self.trace.solve(&wanted);
             if matches!(answer, Answer::Possible(_)) {

@@ -106,7 +106,8 @@ impl<'a> Sequences<'a> {
         for it in &mut list {
             let in_tables = it.in_tables;
             let mut judge = Judge::new(&mut trace, it);
-            let (deviations, together, counts) = (if in_tables { Vec::new() } else { judge.deviations() }, judge.together(), judge.counts());
+            let (deviations, together, counts) =
+                (if in_tables { Vec::new() } else { judge.deviations() }, judge.together(), judge.counts());
             (it.deviations, it.together, it.counts) = (deviations, together, counts);
         }
         Self { trace: Some(trace), list, faults }

@@ -264,11 +264,14 @@ fn by_common_reset(trace: &mut Trace<'_>, firings: &[Firing]) -> Vec<(usize, usi
     for (at, it) in firings.iter().enumerate().filter(|it| !it.1.sets.is_empty()) {
         it.asks.iter().for_each(|(bit, _)| setters.entry(*bit).or_default().push(at));
     }
-    let mut found = Vec::new();
+    /// So many pairs are compared.
+    const MOST: usize = 10_000;
+    let (mut found, mut left) = (Vec::new(), MOST);
     for (reset, it) in firings.iter().enumerate().filter(|it| it.1.sets.is_empty()) {
         for &(step, _) in it.resets.iter().filter(|step| it.asks_for(step.0)) {
             for &set in setters.get(&step).into_iter().flatten() {
-                if firings[set].reset_of(step).is_none() {
+                if firings[set].reset_of(step).is_none() && left > 0 {
+                    left -= 1;
                     let [whole, part] = [firings[set].condition, it.condition].map(|it| trace.expand(it));
                     if trace.solve(&[(whole, true), (part, false)]).is_never() {
                         found.push((set, reset, step));

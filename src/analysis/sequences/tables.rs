@@ -52,8 +52,9 @@ struct Words {
     before: Footprint,
     on: Option<Footprint>,
     off: Option<Footprint>,
-    /// The event that computes all steps at once.
+    /// The event that computes all steps at once, and the one before it that used the same tables for another graph.
     equation: Option<usize>,
+    since: Option<usize>,
 }
 
 /// All sequences in tables of a scan.
@@ -66,7 +67,9 @@ pub fn find(program: &ProgramIndex<'_>, trace: &mut Trace<'_>) -> Vec<Table> {
             let now = place(event.object);
             if !words.iter().any(|it| it.now == now) {
                 let (on, off) = (Some(place(on)), Some(place(off)));
-                words.push(Words { now, before: place(before), on, off, equation: Some(at) });
+                // Activations and deactivations may be common to all graphs (GRF:1120).
+                let since = words.iter().filter(|it| it.on == on || it.off == off).filter_map(|it| it.equation).max();
+                words.push(Words { now, before: place(before), on, off, equation: Some(at), since });
             }
         }
     }
@@ -169,8 +172,9 @@ fn by_step(trace: &Trace<'_>) -> Vec<Words> {
             let area = places.map(|it| it.area.clone()).next()?;
             let bits = (last / 8 * 8 + 8).checked_sub(first)?;
             let before = u32::try_from(i64::from(first) + distance).ok()?;
-            let (now, before) = whole(trace, Footprint::new(area.clone(), first, bits), Footprint::new(area, before, bits));
-            (!now.overlaps(&before)).then_some(Words { now, before, on: None, off: None, equation: None })
+            let (now, before) =
+                whole(trace, Footprint::new(area.clone(), first, bits), Footprint::new(area, before, bits));
+            (!now.overlaps(&before)).then_some(Words { now, before, on: None, off: None, equation: None, since: None })
         })
         .collect()
 }
@@ -264,7 +268,12 @@ impl Graph<'_, '_> {
     fn one_by_one(&self) -> Vec<Crossed> {
         let mut crossed: Vec<Crossed> = Vec::new();
         let mut known: FxHashMap<ExprId, usize> = FxHashMap::default();
-        for (at, event) in self.trace.events.iter().enumerate().filter(|it| it.1.how == How::Set) {
+        let is_mine =
+            |at: usize| self.words.since.is_none_or(|it| it < at) && self.words.equation.is_none_or(|it| at < it);
+        let events = || self.trace.events.iter().enumerate().filter(|it| it.1.how == How::Set);
+        // Sets behind the equation are of the next scan, where no other graph has the tables.
+        let shared = self.words.since.is_some() || self.others_follow();
+        for (at, event) in events().filter(|it| !shared || is_mine(it.0)) {
             let rank = |word: &Option<Footprint>| self.rank(word.as_ref()?, event.object);
             let (on, off) = (rank(&self.words.on), rank(&self.words.off));
             if on.is_none() && off.is_none() {
@@ -280,6 +289,16 @@ impl Graph<'_, '_> {
             crossed[place].resets.extend(off.map(|it| (it, at)));
         }
         crossed
+    }
+
+    /// Whether another graph uses the same tables after this one.
+    fn others_follow(&self) -> bool {
+        let mut later = self.trace.events.iter().skip(self.words.equation.map_or(0, |it| it + 1));
+        later.any(|it| {
+            let found = it.value.and_then(|it| evolution(self.trace, it));
+            let place = |it: ObjectId| Some(&self.trace.object(it).footprint);
+            found.is_some_and(|it| place(it.0) == self.words.on.as_ref() || place(it.2) == self.words.off.as_ref())
+        })
     }
 
     /// Steps that a condition asks for, and the rest of it.
@@ -337,7 +356,7 @@ impl Graph<'_, '_> {
         let mut faults = Vec::new();
         faults.extend(self.stale(crossed));
         for word in [&self.words.on, &self.words.off].into_iter().flatten() {
-            faults.extend(self.not_cleared(word, self.words.equation));
+            faults.extend(self.not_cleared(word, self.words.since, self.words.equation));
         }
         for (at, event) in self.trace.events.iter().enumerate() {
             if event.how == How::Store && self.trace.object(event.object).footprint == self.words.now {
@@ -361,7 +380,7 @@ impl Graph<'_, '_> {
             }
         }
         for word in tables {
-            faults.extend(self.not_cleared(&word, None));
+            faults.extend(self.not_cleared(&word, None, None));
         }
         faults
     }
@@ -406,16 +425,22 @@ impl Graph<'_, '_> {
         };
         if copy.0 > first {
             let related = vec![(place, "the steps are computed here".to_owned())];
-            return Some(fault(copy.1.site, format!("{what}, {name}, is copied after the steps are computed"), related));
+            return Some(fault(
+                copy.1.site,
+                format!("{what}, {name}, is copied after the steps are computed"),
+                related,
+            ));
         }
         let late = all.iter().filter(writes_before).find(|it| it.0 > copy.0 && (it.0 < end || !is_copy(it)))?;
         let related = vec![(copy.1.site, "copied here".to_owned())];
         Some(fault(late.1.site, format!("{what}, {name}, is written after it was copied"), related))
     }
 
-    /// A table whose bits are set and not taken back before they are set again.
-    fn not_cleared(&self, table: &Footprint, equation: Option<usize>) -> Option<Fault> {
-        let events = || self.trace.events.iter().enumerate();
+    /// A table whose bits are set and not taken back before they are set again. `since`: where another graph used it last;
+    /// `use_at`: where it is used.
+    fn not_cleared(&self, table: &Footprint, since: Option<usize>, use_at: Option<usize>) -> Option<Fault> {
+        let is_mine = |at: usize| since.is_none_or(|since| since < at && use_at.is_none_or(|it| at <= it));
+        let events = || self.trace.events.iter().enumerate().filter(|it| is_mine(it.0));
         let place = |it: &Event| &self.trace.object(it.object).footprint;
         let is_zero = |it: &Event| it.value.is_some_and(|it| matches!(self.trace.exprs.get(it), Expr::Int(0)));
         let is_mark = |it: &Event| match it.how {
@@ -423,13 +448,13 @@ impl Graph<'_, '_> {
             How::Store => it.when != Exprs::TRUE && !is_zero(it),
             _ => false,
         };
-        let first = events().find(|it| place(it.1).overlaps(table) && is_mark(it.1))?;
-        let last = events().filter(|it| place(it.1).overlaps(table) && is_mark(it.1)).last()?.0;
+        let marks: Vec<(usize, &Event)> = events().filter(|it| place(it.1).overlaps(table) && is_mark(it.1)).collect();
+        let (first, last) = (*marks.first()?, marks.last()?.0);
         let clears = |it: &(usize, &Event)| it.1.how == How::Store && is_zero(it.1) && place(it.1).contains(table);
-        let is_cleared = events().filter(clears).any(|it| it.0 < first.0 || it.0 > equation.unwrap_or(last).max(last));
-        let by_bits = |it: &(usize, &Event)| {
-            matches!(it.1.how, How::Reset | How::Assign) && place(it.1).overlaps(table)
-        };
+        let end = use_at.unwrap_or(last).max(last);
+        let is_cleared = events().filter(clears).any(|it| it.0 < first.0 || it.0 > end);
+        let by_bits =
+            |it: &(usize, &Event)| matches!(it.1.how, How::Reset | How::Assign) && place(it.1).overlaps(table);
         if is_cleared || events().any(|it| by_bits(&it)) {
             return None;
         }
@@ -468,7 +493,7 @@ impl Graph<'_, '_> {
             faults.push(Fault { kind: FaultKind::ForcedOff, site: event.site, message, related: Vec::new() });
         }
         for it in [one, zero] {
-            faults.extend(self.not_cleared(&self.trace.object(it).footprint, Some(at)));
+            faults.extend(self.not_cleared(&self.trace.object(it).footprint, None, Some(at)));
         }
         faults
     }
@@ -488,10 +513,8 @@ impl Graph<'_, '_> {
             _ => false,
         });
         let event = self.trace.events.get(crossed.sets.first()?.1)?;
-        let message = format!(
-            "this transition waits for no step, and is passed by while {} is 0",
-            self.text(&self.words.before)
-        );
+        let message =
+            format!("this transition waits for no step, and is passed by while {} is 0", self.text(&self.words.before));
         asks.then_some(Fault { kind: FaultKind::PassedBy, site: event.site, message, related: Vec::new() })
     }
 

@@ -10,8 +10,8 @@ use smol_str::SmolStr;
 
 use super::code::{Act, How};
 use crate::analysis::Site;
-use crate::analysis::program::{Context, ProgramIndex};
 use crate::analysis::conditions::{Answer, Objects, Space};
+use crate::analysis::program::{Context, ProgramIndex};
 use crate::model::entity::{BlockName, Family};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
 use crate::model::object::{Area, Class, Footprint, Object, Type};
@@ -71,6 +71,9 @@ struct Table<'a> {
 
 /// What a call gives: the object, and the place where it says so.
 type Binding = FxHashMap<SmolStr, (ObjectId, Site)>;
+
+/// By call: names of parameters in lower case, what is given for them, and the anchors of that.
+type Arguments = FxHashMap<u32, Vec<(SmolStr, ObjectId, u32)>>;
 
 struct Runner<'p, 'a> {
     program: &'p ProgramIndex<'a>,
@@ -412,7 +415,7 @@ impl<'a> Runner<'_, 'a> {
             });
         }
         let mut known: Vec<Option<ExprId>> = vec![None; code.pool.len()];
-        let mut arguments: Option<FxHashMap<u32, Vec<(SmolStr, ObjectId, u32)>>> = None;
+        let mut arguments: Option<Arguments> = None;
         for act in &code.acts {
             let mut eval = |runner: &mut Self, at: u32, path: ExprId| runner.eval(code, at, &mut known, &ids, path);
             match *act {
@@ -461,7 +464,7 @@ impl<'a> Runner<'_, 'a> {
                     let when = eval(self, when, path);
                     let path = [path, when].into_iter().fold(under, |all, it| self.trace.exprs.and(all, it));
                     let arguments = arguments.get_or_insert_with(|| {
-                        let mut all: FxHashMap<u32, Vec<(SmolStr, ObjectId, u32)>> = FxHashMap::default();
+                        let mut all = Arguments::default();
                         for it in &facts.uses {
                             if let Some((call, Formal::Name(name))) = &it.parameter
                                 && let Some(&object) = ids.get(it.object as usize)
@@ -485,7 +488,7 @@ impl<'a> Runner<'_, 'a> {
                         }
                         // It may do anything with what it is given.
                         _ => {
-                            for (_, object, _) in given.to_vec() {
+                            for &(_, object, _) in given {
                                 let value = self.trace.exprs.opaque();
                                 self.give(object, value, path);
                                 self.assigned.remove(&object);
