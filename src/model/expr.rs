@@ -203,7 +203,39 @@ impl Guard {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Pool {
     /// Operands before what they are operands of.
-    nodes: Box<[Expr]>,
+    nodes: Box<[Packed]>,
+}
+
+/// An expression in the room that most of them need: pools are kept for every unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Packed {
+    Read(ObjectId, u32),
+    Not(ExprId),
+    And(ExprId, ExprId),
+    Or(ExprId, ExprId),
+    Other(Box<Expr>),
+}
+
+impl Packed {
+    fn new(expr: Expr) -> Self {
+        match expr {
+            Expr::Read { object, version } => Self::Read(object, version),
+            Expr::Not(a) => Self::Not(a),
+            Expr::And(a, b) => Self::And(a, b),
+            Expr::Or(a, b) => Self::Or(a, b),
+            other => Self::Other(Box::new(other)),
+        }
+    }
+
+    fn unpack(&self) -> Expr {
+        match *self {
+            Self::Read(object, version) => Expr::Read { object, version },
+            Self::Not(a) => Expr::Not(a),
+            Self::And(a, b) => Expr::And(a, b),
+            Self::Or(a, b) => Expr::Or(a, b),
+            Self::Other(ref other) => (**other).clone(),
+        }
+    }
 }
 
 impl Pool {
@@ -384,7 +416,7 @@ impl Exprs {
         ids.sort_unstable();
         let places: FxHashMap<ExprId, u32> = ids.iter().copied().zip(0..).collect();
         let place = |id: ExprId| ExprId(places.get(&id).copied().unwrap_or(0));
-        let nodes = ids.iter().map(|it| self.get(*it).with_operands(place)).collect();
+        let nodes = ids.iter().map(|it| Packed::new(self.get(*it).with_operands(place))).collect();
         (Pool { nodes }, places)
     }
 
@@ -443,10 +475,11 @@ impl Exprs {
     ) -> ExprId {
         let mut stack = vec![at];
         while let Some(&at) = stack.last() {
-            let (Some(expr), Some(None)) = (pool.nodes.get(at as usize), known.get(at as usize)) else {
+            let (Some(packed), Some(None)) = (pool.nodes.get(at as usize), known.get(at as usize)) else {
                 stack.pop();
                 continue;
             };
+            let expr = packed.unpack();
             let before = stack.len();
             expr.operands(|it| {
                 if let Some(None) = known.get(it.0 as usize) {
@@ -457,7 +490,7 @@ impl Exprs {
                 continue;
             }
             let made = match expr {
-                Expr::Read { .. } | Expr::Edge { .. } | Expr::Opaque(_) => leaf(self, expr),
+                Expr::Read { .. } | Expr::Edge { .. } | Expr::Opaque(_) => leaf(self, &expr),
                 _ => {
                     let operand = |it: ExprId| known.get(it.0 as usize).copied().flatten().unwrap_or(Self::FALSE);
                     self.build(&expr.with_operands(operand))
