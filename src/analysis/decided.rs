@@ -92,6 +92,7 @@ pub fn decided(model: &UnitModel) -> Vec<Decided> {
         {
             found.extend(decided(Because::Stored(model.place(anchor)), value));
         } else if statement.path != Exprs::TRUE
+            && paths.is_short(&space, statement.path)
             && let Some(value) = space.constant(statement.path, condition)
             && repeated_arm(model, &space, at).is_none()
         {
@@ -164,13 +165,25 @@ pub fn unreached(model: &UnitModel) -> Vec<(u32, u32)> {
 
 /// Which paths nothing takes. Most statements share theirs.
 #[derive(Default)]
-struct Paths(FxHashMap<ExprId, bool>);
+struct Paths {
+    closed: FxHashMap<ExprId, bool>,
+    short: FxHashMap<ExprId, bool>,
+}
 
 impl Paths {
     fn is_closed(&mut self, space: &Space<'_>, path: ExprId) -> bool {
         if path == Exprs::TRUE || path == Exprs::FALSE {
             return path == Exprs::FALSE;
         }
-        *self.0.entry(path).or_insert_with(|| space.together(&[path]) == Verdict::Never)
+        if !self.is_short(space, path) {
+            return false;
+        }
+        *self.closed.entry(path).or_insert_with(|| space.together(&[path]) == Verdict::Never)
+    }
+
+    /// Whether a path is looked into: each jump that control may pass makes that of the next one longer.
+    fn is_short(&mut self, space: &Space<'_>, path: ExprId) -> bool {
+        const LONGEST: usize = 128;
+        *self.short.entry(path).or_insert_with(|| space.exprs.is_within(path, LONGEST))
     }
 }
