@@ -9,6 +9,7 @@ use smol_str::SmolStr;
 use super::Site;
 use super::chart::{self, Actions, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
+use super::sequences::Sequences;
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
@@ -266,6 +267,8 @@ pub struct ProgramIndex<'a> {
     names: FxHashMap<UnitName, u32>,
     charts: OnceCell<Vec<Chart<'a>>>,
     actions: OnceCell<Actions<'a>>,
+    sequences: OnceCell<Sequences<'a>>,
+    sequence_charts: OnceCell<Vec<Chart<'a>>>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -319,12 +322,24 @@ impl<'a> ProgramIndex<'a> {
             names,
             charts: OnceCell::new(),
             actions: OnceCell::new(),
+            sequences: OnceCell::new(),
+            sequence_charts: OnceCell::new(),
         }
     }
 
     /// The charts of the program, whose pages are joined.
     pub fn charts(&self) -> &[Chart<'a>] {
         self.charts.get_or_init(|| chart::join(&self.units))
+    }
+
+    /// The sequences that the program codes with bits.
+    pub fn sequences(&self) -> &Sequences<'a> {
+        self.sequences.get_or_init(|| Sequences::new(self))
+    }
+
+    /// The same as charts, in their order.
+    pub fn sequence_charts(&'a self) -> &'a [Chart<'a>] {
+        self.sequence_charts.get_or_init(|| self.sequences().charts())
     }
 
     /// The actions of their steps.

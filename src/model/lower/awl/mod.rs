@@ -22,9 +22,9 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, Operator};
 use crate::model::object::Type;
-use crate::model::unit::{Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, StatementKind};
+use crate::model::unit::{Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, Pulse, StatementKind};
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Shift};
+use crate::syntax::awl::instruction::{ArithOp, Conversion, JumpIf, LogicOp, Op, Shift};
 use crate::syntax::{AstNode as _, Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
@@ -278,12 +278,15 @@ impl Machine {
             }
             Op::EdgePositive | Op::EdgeNegative => {
                 let was_fresh = self.fresh;
-                self.use_rlo(range, &mnemonic_text(instr));
-                if let Some((object, at)) = self.object_operand(instr) {
-                    self.b.touch(object, Mode::EdgeMemory, at);
-                    self.note_write(object);
-                }
+                let of = self.use_rlo(range, &mnemonic_text(instr));
                 let value = self.b.exprs().opaque();
+                if let Some((memory, at)) = self.object_operand(instr) {
+                    self.b.touch(memory, Mode::EdgeMemory, at);
+                    self.note_write(memory);
+                    let (statement, path) = (index(self.b.model.statements.len()), self.b.path());
+                    let rising = op == Op::EdgePositive;
+                    self.b.model.pulses.push(Pulse { value, of, memory, rising, statement, path });
+                }
                 self.or_base = None;
                 if was_fresh {
                     self.string = None;
@@ -377,6 +380,13 @@ impl Machine {
                     self.use_loads(1);
                 }
                 self.opaque_result();
+            }
+            Op::Convert(Conversion::OnesComplementInt | Conversion::OnesComplementDint) => {
+                self.ignores_rlo(range, instr);
+                let value = self.accumulator(0);
+                let all = self.b.exprs().int(-1);
+                let value = self.b.exprs().binary(Operator::Xor, value, all);
+                self.result(value);
             }
             Op::Convert(_) | Op::Real(_) => {
                 self.ignores_rlo(range, instr);
