@@ -17,6 +17,7 @@ use smol_str::SmolStr;
 
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
+use crate::analysis::fields;
 use crate::analysis::program::ProgramIndex;
 use crate::analysis::symbols::{self, SymbolTable};
 use crate::lint::settings::{ProgramScope, Settings};
@@ -212,6 +213,10 @@ pub struct Program<'db> {
     #[tracked]
     #[returns(deref)]
     pub files: Vec<SourceFile>,
+    /// Symbol tables that it shares with other programs.
+    #[tracked]
+    #[returns(deref)]
+    pub tables: Vec<SourceFile>,
 }
 
 /// What of a file says which program it belongs to.
@@ -226,10 +231,15 @@ fn is_application(db: &dyn Db, file: SourceFile) -> bool {
     !named_entities(db, file).is_empty() && *declares_variables(db, file)
 }
 
+/// Whether units of a language declare the symbols of their program.
+fn declares(language: Language) -> bool {
+    matches!(language, Language::Exchange | Language::SymbolTable)
+}
+
 /// Whether a file declares variables beside or without code: it belongs to the code around it.
 #[salsa::tracked]
 fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
-    let mut declaring = units(db, file).iter().filter(|it| it.language(db) == Language::Exchange);
+    let mut declaring = units(db, file).iter().filter(|it| declares(it.language(db)));
     declaring.any(|&it| !facts(db, it).symbols.is_empty())
 }
 
@@ -238,6 +248,8 @@ fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
 /// Files of one folder and vendor are one program, unless two of them define the same entity (two variants of one
 /// machine side by side) or hold code that does not say what it is: those stand alone. Where whole applications lie beside
 /// exports of their parts, each application is a program, and the other files are one, to which files of variables belong.
+/// Of a STEP 7 project, the sources of each program lie in a folder of their own. The symbols of files that stand alone are
+/// those of the tables beside them.
 #[salsa::tracked(returns(deref))]
 pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     let project = db.project();
@@ -262,10 +274,15 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
         });
         folders[at].2.push(file);
     }
+    let program = |key, family, files| Program::new(db, key, family, files, Vec::new());
     let mut programs = Vec::new();
     for (folder, family, files) in folders {
         if scope != ProgramScope::Auto || !clash(db, &files) {
-            programs.push(Program::new(db, folder, family, files));
+            programs.push(program(folder, family, files));
+            continue;
+        }
+        if family == Family::Step7 {
+            programs.extend(apart(db, files));
             continue;
         }
         let (whole, parts): (Vec<SourceFile>, Vec<SourceFile>) =
@@ -274,13 +291,34 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
         if parts.is_empty() || clash(db, &parts) {
             alone.extend(parts.into_iter().map(|file| (family, file)));
         } else {
-            programs.push(Program::new(db, folder, family, parts));
+            programs.push(program(folder, family, parts));
         }
     }
     for (family, file) in alone {
-        programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file]));
+        programs.push(program(file.path(db).to_owned(), family, vec![file]));
     }
     programs.into_boxed_slice()
+}
+
+/// Files of one folder of STEP 7 that cannot be one program: those of each folder below it are one, else each is one.
+fn apart<'db>(db: &'db dyn Db, files: Vec<SourceFile>) -> Vec<Program<'db>> {
+    let (tables, code): (Vec<SourceFile>, Vec<SourceFile>) =
+        files.into_iter().partition(|&it| it.detected(db) == Detected::Step7Symbols);
+    let mut programs = Vec::new();
+    let parent = |it: &SourceFile| parent_of(it.path(db));
+    for files in code.chunk_by(|a, b| parent(a) == parent(b)) {
+        if let Some(first) = files.first().filter(|_| files.len() < code.len() && !clash(db, files)) {
+            let key = parent(first).to_owned();
+            programs.push(Program::new(db, key, Family::Step7, files.to_vec(), tables.clone()));
+            continue;
+        }
+        for &file in files {
+            programs.push(Program::new(db, file.path(db).to_owned(), Family::Step7, vec![file], tables.clone()));
+        }
+    }
+    let alone = |&file: &SourceFile| Program::new(db, file.path(db).to_owned(), Family::Step7, vec![file], Vec::new());
+    programs.extend(tables.iter().map(alone));
+    programs
 }
 
 /// Whether two files define the same entity. One that repeats its own is judged by itself.
@@ -292,8 +330,24 @@ fn clash(db: &dyn Db, files: &[SourceFile]) -> bool {
     })
 }
 
-fn folder_of(path: &str) -> &str {
+fn parent_of(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |it| it.0)
+}
+
+/// The folders of a STEP 7 project in which its sources, its symbols and its blocks lie.
+const PROJECT_FOLDERS: [&str; 3] = ["s7asrcom", "YDBs", "ombstx"];
+
+/// The folder that a file belongs to: of a STEP 7 project, that of the project.
+fn folder_of(path: &str) -> &str {
+    let folder = parent_of(path);
+    let mut start = 0;
+    for part in folder.split('/') {
+        if PROJECT_FOLDERS.iter().any(|it| it.eq_ignore_ascii_case(part)) {
+            return folder.get(..start).unwrap_or_default().trim_end_matches('/');
+        }
+        start += part.len() + 1;
+    }
+    folder
 }
 
 /// The vendor family of a file that is linted.
@@ -301,7 +355,7 @@ pub fn family(detected: Detected) -> Option<Family> {
     match detected {
         Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
         Detected::Pl72 | Detected::Pl72Exchange => Some(Family::Pl72),
-        Detected::Step7 => Some(Family::Step7),
+        Detected::Step7 | Detected::Step7Symbols => Some(Family::Step7),
         _ => None,
     }
 }
@@ -315,13 +369,14 @@ pub fn program_of<'db>(db: &'db dyn Db, file: SourceFile) -> Option<Program<'db>
 /// Units of a program: file order, then order in the file.
 #[salsa::tracked(returns(deref))]
 pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'db>]> {
-    program.files(db).iter().flat_map(|&file| units(db, file).iter().copied()).collect()
+    let files = program.files(db).iter().chain(program.tables(db));
+    files.flat_map(|&file| units(db, file).iter().copied()).collect()
 }
 
 /// What the symbols of a program name. It has no places.
 #[salsa::tracked]
 pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
-    let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
+    let declaring = program_units(db, program).iter().filter(|it| declares(it.language(db)));
     SymbolTable::new(declaring.map(|&unit| &**facts(db, unit)))
 }
 
@@ -333,7 +388,10 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
     let target = settings.target_or(program.family(db), named);
     let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
-    let facts = symbols::resolve(symbol_table(db, program), &facts);
+    let mut facts = symbols::resolve(symbol_table(db, program), &facts);
+    if program.family(db) == Family::Step7 {
+        facts = fields::resolve(facts);
+    }
     let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
     let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
     if program.files(db).iter().any(|it| project.partly_read(db).contains(&folder(it))) {
@@ -781,6 +839,7 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
+        (Detected::Step7Symbols, _) => "STEP 7 symbol table".to_owned(),
         (Detected::Stx, _) => "PL7 project, by its cross-reference".to_owned(),
         (Detected::Pl72Exchange, _) => "PL7-2 exchange file".to_owned(),
         (_, Some(Language::Pl72Ld)) => "PL7-2 ladder".to_owned(),

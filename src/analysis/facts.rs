@@ -15,8 +15,9 @@ use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
+use crate::model::layout::DataType;
 use crate::model::object::{Class, Object, Type};
-use crate::model::unit::{Access, Actual, Call, Callee, Formal, Mode, Section, StatementKind};
+use crate::model::unit::{Access, Actual, Call, Callee, Formal, Mode, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -98,15 +99,6 @@ pub struct FactCall {
     pub too_close: Option<u32>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FactDeclaration {
-    /// In lower case.
-    pub name: SmolStr,
-    pub section: Section,
-    /// As written, blanks removed.
-    pub ty: SmolStr,
-}
-
 /// A symbol that the unit declares for the program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FactSymbol {
@@ -135,8 +127,10 @@ pub struct UnitFacts {
     pub exclusive_uses: Vec<(u32, u32)>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
-    /// Parameters and variables that the block declares.
-    pub declared: Vec<FactDeclaration>,
+    /// Whether it opens another data block in place of its instance.
+    pub opens_instance: bool,
+    /// What a block of STEP 7 declares.
+    pub declared: Option<Box<DataType>>,
     pub symbols: Vec<FactSymbol>,
     pub instructions: u32,
     /// Anchor of the first operation of PL7 that can overflow.
@@ -257,11 +251,8 @@ impl UnitFacts {
             exclusive_calls: exclusive_calls(model),
             exclusive_uses: exclusive_uses(model, &given),
             instance_of: model.instance_of.clone(),
-            declared: model
-                .declarations
-                .iter()
-                .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
-                .collect(),
+            opens_instance: model.opens_instance,
+            declared: model.declared.clone().map(Box::new),
             symbols: model
                 .symbols
                 .iter()

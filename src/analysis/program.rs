@@ -12,6 +12,7 @@ use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
+use crate::model::layout::DataType;
 use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
 use crate::model::unit::{Actual, Callee, Formal, Given, Mode, Pin, Section};
@@ -865,7 +866,8 @@ fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit:
     let facts = units[target as usize];
     match formal {
         Formal::Name(name) => {
-            let declared = facts.declared.iter().find(|it| it.name.eq_ignore_ascii_case(name));
+            let mut declared = facts.declared.as_deref().map_or(&[][..], DataType::fields).iter();
+            let declared = declared.find(|it| it.name.eq_ignore_ascii_case(name));
             match declared.map(|it| it.section) {
                 Some(Section::Input) => Mode::Read,
                 Some(Section::Output) => Mode::Output,

@@ -1,5 +1,7 @@
 //! Symbols of a program: which address each names, and the facts of units with addresses in place of symbols.
 //!
+//! In PL7 a symbol stands for an address; in STEP 7 also for a block, and `"Data".DBW0` for a place in one.
+//!
 //! Resolution comes between the facts of units and [`ProgramIndex`](super::program::ProgramIndex): after it, `Pump` and
 //! `%M0` are one object. A unit that uses no symbol is passed on as it is.
 
@@ -9,15 +11,17 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::facts::{FactObject, UnitFacts};
-use crate::model::object::{Class, Object, Type, pl7};
+use crate::model::entity::{BlockKind, BlockName, Entity};
+use crate::model::object::{AddressError, Area, Class, Footprint, Object, Type, pl7, step7};
 use crate::model::symbols::key;
-use crate::model::unit::Mode;
+use crate::model::unit::{Callee, Mode, Pin};
+use crate::syntax::Mnemonics;
 
 /// The symbols of a program, by [`key`], and the symbols of addresses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SymbolTable {
     addresses: FxHashMap<SmolStr, Meaning>,
-    /// Symbol of an address in upper case.
+    /// Symbol of an address in upper case, in each mnemonic set.
     names: FxHashMap<SmolStr, SmolStr>,
 }
 
@@ -35,7 +39,14 @@ impl SymbolTable {
             let meaning = match &symbol.object {
                 Some(object) => {
                     let address = SmolStr::from(object.text.to_ascii_uppercase());
-                    table.names.entry(address.clone()).or_insert_with(|| symbol.name.clone());
+                    if !is_pl7(&address) {
+                        for it in [Mnemonics::German, Mnemonics::English] {
+                            let other = step7::translated(&address, it).map(SmolStr::from);
+                            table.names.extend(other.map(|it| (it, shown(&symbol.name))));
+                        }
+                    }
+                    let name = if is_pl7(&address) { symbol.name.clone() } else { shown(&symbol.name) };
+                    table.names.entry(address.clone()).or_insert(name);
                     Meaning::Address(address)
                 }
                 None => Meaning::Unknown,
@@ -55,11 +66,33 @@ impl SymbolTable {
     /// The address of a symbol. An item or bit that has no symbol of its own goes by that of its object: `Etat:X1`,
     /// `Tempo.Q`, a table by that of its first word (PL7:1234-1242).
     pub fn address(&self, symbol: &str) -> Option<SmolStr> {
-        let base = symbol.find(['.', ':']).unwrap_or(symbol.len());
-        let (name, rest) = symbol.split_at_checked(base)?;
+        let (name, rest) = self.parts(symbol)?;
         match self.addresses.get(&key(name))? {
             Meaning::Address(address) if rest.is_empty() => Some(address.clone()),
             Meaning::Address(address) => Some(format_smolstr!("{address}{rest}")),
+            Meaning::Unknown => None,
+        }
+    }
+
+    /// A symbol, without its quotes, and what stands behind it. That of STEP 7 may itself have a point in it.
+    fn parts<'s>(&self, symbol: &'s str) -> Option<(&'s str, &'s str)> {
+        for (open, close) in [('"', '"'), ('«', '»')] {
+            if let Some((name, rest)) = symbol.strip_prefix(open).and_then(|it| it.split_once(close)) {
+                return Some((name.trim_matches([' ', '\u{a0}', '\u{202f}']), rest));
+            }
+        }
+        let base = symbol.find(['.', ':']).filter(|_| !self.addresses.contains_key(&key(symbol)));
+        symbol.split_at_checked(base.unwrap_or(symbol.len()))
+    }
+
+    /// The number of a block that a program names by a symbol.
+    pub fn block(&self, name: &BlockName) -> Option<BlockName> {
+        let BlockName::Symbol(symbol) = name else { return None };
+        match self.addresses.get(&key(symbol))? {
+            Meaning::Address(address) => match step7::parse_either(address).ok()?.footprint.area {
+                Area::CodeBlock(name) => Some(name),
+                _ => None,
+            },
             Meaning::Unknown => None,
         }
     }
@@ -91,7 +124,7 @@ impl SymbolTable {
             // The odd parts stand between two of the quotes, but for one behind an unpaired quote.
             let is_closed = at % 2 == 0 && at > 1;
             let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
-            let other = if name.starts_with('%') { self.symbol(name) } else { self.address(name) };
+            let other = if is_pl7(name) { self.symbol(name) } else { self.address(name).or_else(|| self.symbol(name)) };
             if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
                 out.truncate(out.len() - part.len());
                 out.push_str(" (`");
@@ -105,19 +138,47 @@ impl SymbolTable {
 
     /// What a symbol used in code names, under the text that the code gives it.
     fn resolve(&self, object: &Object) -> Option<Object> {
-        if object.class != Class::Symbol {
-            return None;
-        }
         let text = object.text.as_str();
+        if let Some((block, path)) = step7::field(object) {
+            let number = self.block(&block)?;
+            return Some(Object {
+                footprint: Footprint::new(step7::field_area(&number, &path), 0, 1),
+                ..object.clone()
+            });
+        }
+        match (&object.footprint.area, object.class) {
+            (_, Class::Symbol) => {}
+            (Area::Data(block), _) => {
+                let area = Area::Data(self.block(block)?);
+                return Some(Object { footprint: Footprint { area, ..object.footprint.clone() }, ..object.clone() });
+            }
+            _ => return None,
+        }
         let resolved = if object.indexed {
             let (name, rest) = text.split_once('[')?;
             let suffix = rest.rsplit_once(']').map(|it| it.1).filter(|it| !it.is_empty());
             pl7::parse_indexed(&self.address(name)?, suffix)
         } else {
-            pl7::parse(&self.address(text)?)
+            parse(&self.address(text)?)
         };
-        Some(Object { text: object.text.clone(), ..resolved.ok()? })
+        let resolved = resolved.ok()?;
+        // An array of a data block that is indexed is none of its first element.
+        Some(Object { text: object.text.clone(), indexed: object.indexed, ..resolved })
     }
+}
+
+/// Whether an address is one of PL7: those of STEP 7 begin with a letter.
+fn is_pl7(address: &str) -> bool {
+    address.starts_with('%')
+}
+
+fn parse(address: &str) -> Result<Object, AddressError> {
+    if is_pl7(address) { pl7::parse(address) } else { step7::parse_either(address) }
+}
+
+/// A symbol of STEP 7 as code writes it.
+fn shown(name: &str) -> SmolStr {
+    format_smolstr!("\"{name}\"")
 }
 
 /// The facts of the units of a program with every symbol that the table knows replaced by its object.
@@ -127,16 +188,19 @@ pub fn resolve<'a>(table: &SymbolTable, units: &[&'a UnitFacts]) -> Vec<Cow<'a, 
 
 fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFacts> {
     let found: Vec<Option<Object>> = facts.objects.iter().map(|it| table.resolve(&it.object)).collect();
-    if found.iter().all(Option::is_none) {
+    if found.iter().all(Option::is_none) && !names_blocks(facts) {
         return Cow::Borrowed(facts);
     }
     let mut facts = facts.clone();
+    resolve_blocks(table, &mut facts);
     for it in &mut facts.uses {
         // Without its type, a symbol that takes a value is a word or a bit by what it takes.
         if let Some(Some(object)) = found.get(it.object as usize) {
             it.mode = match (it.mode, object.ty) {
                 (Mode::Assign | Mode::AssignNot, ty) if ty != Type::Bool => Mode::Store,
                 (Mode::Store, Type::Bool) => Mode::Assign,
+                (Mode::Set, Type::Block) => Mode::Drive(Pin::Preset),
+                (Mode::Reset, Type::Block) => Mode::Drive(Pin::Reset),
                 (mode, _) => mode,
             };
         }
@@ -150,10 +214,53 @@ fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFa
     Cow::Owned(facts)
 }
 
+/// Whether a unit names blocks, itself too, by symbols.
+fn names_blocks(facts: &UnitFacts) -> bool {
+    let is_symbol = |it: &BlockName| matches!(it, BlockName::Symbol(_));
+    facts.entity.name().is_some_and(is_symbol)
+        || facts.instance_of.as_ref().is_some_and(is_symbol)
+        || facts.declared.as_deref().is_some_and(|it| {
+            let mut found = false;
+            it.each_named(&mut |it| found |= is_symbol(it));
+            found
+        })
+        || facts.calls.iter().any(|it| {
+            matches!(&it.callee, Callee::Block(name) if is_symbol(name)) || it.instance.as_ref().is_some_and(is_symbol)
+        })
+}
+
+/// Puts the numbers of blocks in place of their symbols.
+fn resolve_blocks(table: &SymbolTable, facts: &mut UnitFacts) {
+    let replace = |name: &mut BlockName| {
+        if let Some(number) = table.block(name) {
+            *name = number;
+        }
+    };
+    if let Entity::Block { kind, name } = &mut facts.entity
+        && let Some(number) = table.block(name).filter(|it| matches!(it, BlockName::Number(it, _) if it == kind))
+    {
+        *name = number;
+    }
+    facts.instance_of.iter_mut().for_each(replace);
+    // Code cannot tell whether the symbol is that of a type or of a function block.
+    if matches!(facts.instance_of, Some(BlockName::Number(BlockKind::Udt, _))) {
+        facts.instance_of = None;
+    }
+    if let Some(declared) = &mut facts.declared {
+        declared.each_named_mut(&mut |it| replace(it));
+    }
+    for call in &mut facts.calls {
+        if let Callee::Block(name) = &mut call.callee {
+            replace(name);
+        }
+        call.instance.iter_mut().for_each(replace);
+    }
+}
+
 /// Where one unit uses an object by its address and by its symbol, the unit's own facts took them for two. What is not
 /// known of the two together is taken so that no rule speaks without need: conditional writes count as one write, and a
 /// read behind an unconditional write as one of the unit's own value.
-fn join_aliases(facts: &mut UnitFacts) {
+pub(super) fn join_aliases(facts: &mut UnitFacts) {
     let mut first: FxHashMap<_, u32> = FxHashMap::default();
     let mut aliased: FxHashSet<u32> = FxHashSet::default();
     let same: Vec<u32> = (0..)

@@ -72,6 +72,7 @@ fn input(path: String, bytes: &[u8], explicit: bool, settings: &Settings, dialec
         | Detected::Pl72
         | Detected::Pl72Exchange
         | Detected::Step7
+        | Detected::Step7Symbols
         | Detected::Stx => {
             return Ok(Input { path, source, detected });
         }

@@ -14,6 +14,7 @@ use super::dfb::Interface;
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
+use super::layout::DataType;
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use super::pl7_kinds::Kind;
@@ -503,17 +504,7 @@ pub enum HollowKind {
     Network,
 }
 
-/// A name that a block declares.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Declaration {
-    /// In lower case.
-    pub name: SmolStr,
-    pub section: Section,
-    /// The type as written, blanks removed: `INT`, `ARRAY[0..7]OFBOOL`, `"Motor"`.
-    pub ty: SmolStr,
-    pub range: TextRange,
-}
-
+/// Part of an interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Section {
     Input,
@@ -537,7 +528,8 @@ pub struct UnitModel {
     pub jumps: Vec<Jump>,
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
-    pub declarations: Vec<Declaration>,
+    /// What a block of STEP 7 declares.
+    pub declared: Option<DataType>,
     /// Symbols that the unit declares for the program.
     pub symbols: Vec<Symbol>,
     /// Comments whose length is limited.
@@ -557,6 +549,8 @@ pub struct UnitModel {
     pub anchors: Vec<TextRange>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
+    /// Whether it opens another data block in place of its instance.
+    pub opens_instance: bool,
     /// Instructions and statements read.
     pub instructions: u32,
     /// Some place computed at run time is read (or written): any object may be.

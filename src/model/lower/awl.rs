@@ -12,14 +12,16 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::builder::{Builder, index};
+use super::interface;
 use crate::model::UnitModel;
 use crate::model::entity::{BlockKind, BlockName, Entity};
 use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
+use crate::model::layout::{Elementary, Field, Layout, Layouts};
 use crate::model::literal::{self, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Declaration, Formal, Hollow, HollowKind, Leave, LoopKind, Mode,
-    OddityKind, Pin, Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Formal, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind, Pin,
+    Section, StatementKind,
 };
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};
@@ -45,6 +47,8 @@ pub fn lower(root: SyntaxNode<'_>, entity: Entity, mnemonics: Mnemonics) -> Unit
         back_targets: FxHashSet::default(),
         operands: FxHashMap::default(),
         declared: FxHashMap::default(),
+        temporary: Layout::default(),
+        instance: Layout::default(),
         closed: false,
         last_load: None,
         jump_list: false,
@@ -190,6 +194,9 @@ struct Machine {
     operands: FxHashMap<SmolStr, Operand>,
     /// Names that the block declares, in lower case.
     declared: FxHashMap<SmolStr, Type>,
+    /// Where its own variables lie: in the local data, and in the instance of a function block.
+    temporary: Layout,
+    instance: Layout,
     /// The block's end was read, so that what is left over is really lost.
     closed: bool,
     /// The instruction before, when it was a load.
@@ -326,31 +333,23 @@ impl Machine {
     // Declarations.
 
     fn declarations(&mut self, block: SyntaxNode<'_>) {
-        for section in block.children().filter_map(ast::VarSection::cast) {
-            let Some(keyword) = section.keyword() else { continue };
-            let kind = match keyword.text().to_ascii_uppercase().as_str() {
-                "VAR_INPUT" => Section::Input,
-                "VAR_OUTPUT" => Section::Output,
-                "VAR_IN_OUT" => Section::InOut,
-                "VAR_TEMP" => Section::Temp,
-                _ => Section::Static,
-            };
-            for decl in section.decls() {
-                let ty: String = match decl.type_ref() {
-                    Some(ty) => ty.text().split_whitespace().collect(),
-                    None if decl.array_type().is_some() => "ARRAY".to_owned(),
-                    None => "STRUCT".to_owned(),
-                };
-                self.initial_value(decl.init());
-                for name in decl.names() {
-                    let range = name.range();
-                    let name = SmolStr::new(name.text().to_lowercase());
-                    self.declared.insert(name.clone(), declared_type(&ty));
-                    let ty = SmolStr::new(&ty);
-                    self.b.model.declarations.push(Declaration { name, section: kind, ty, range });
-                }
-            }
+        let sections = block.children().filter_map(ast::VarSection::cast);
+        for decl in sections.flat_map(ast::VarSection::decls) {
+            self.initial_value(decl.init());
         }
+        let declared = interface::declared(block, &mut self.b);
+        let (temporary, own): (Vec<Field>, Vec<Field>) =
+            declared.fields().iter().cloned().partition(|it| it.section == Section::Temp);
+        for it in temporary.iter().chain(&own) {
+            let ty = it.ty.elementary().map_or(Type::Unknown, Elementary::operand);
+            self.declared.insert(it.name.clone(), ty);
+        }
+        self.temporary = Layouts::of_temporary(&temporary);
+        // What other blocks are given lies where their caller keeps it.
+        if self.b.model.entity.block_kind() == Some(BlockKind::Fb) {
+            self.instance = Layouts::of_fields(&own);
+        }
+        self.b.model.declared = Some(declared);
     }
 
     /// Reads the constant of `:= S5T#1S`. Repetitions and lists of array elements are left alone.
@@ -383,19 +382,26 @@ impl Machine {
         let range = node.range();
         let first = first_kind(node);
         let has_index = is_indexed(node);
+        // An element of an array by its number has one place.
+        let is_number = |it: ast::Operand<'_>| matches!(first_kind(&it), Some(SyntaxKind::Number | SyntaxKind::Minus));
+        let is_fixed = !has_index || node.indices().all(is_number);
         let operand = match first {
             Some(
                 SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::CharString | SyntaxKind::PointerConstant,
             )
             | Some(SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Hash) => return self.constant(&text, range),
             Some(SyntaxKind::LocalName) => Operand::Object(self.local(&text, has_index)),
-            Some(SyntaxKind::QuotedSymbol) => {
+            Some(SyntaxKind::QuotedSymbol) if is_fixed && is_field(&text) => match self.address(&text, range) {
+                Ok(object) => Operand::Object(object),
+                Err(object) => return Operand::Object(object),
+            },
+            Some(SyntaxKind::QuotedSymbol) if !has_index => {
                 let mut object = Object::symbol(&text);
                 object.indexed = has_index;
                 Operand::Object(self.b.object(object))
             }
             Some(SyntaxKind::LBrack) => Operand::Object(self.indirect(&text, Type::Unknown)),
-            Some(_) if has_index => {
+            Some(_) if !is_fixed => {
                 for inner in node.indices() {
                     if let Operand::Object(object) = self.operand(&inner) {
                         self.b.read(object, inner.range());
@@ -437,17 +443,22 @@ impl Machine {
 
     fn local(&mut self, text: &str, indexed: bool) -> ObjectId {
         let name = text.trim_start_matches('#').replace('"', "").to_lowercase();
-        let root = name.split(['.', '[']).next().unwrap_or_default();
-        let ty = if root == name { self.declared.get(root).copied().unwrap_or(Type::Unknown) } else { Type::Unknown };
-        self.b.object(Object {
-            text: text.into(),
-            class: Class::LocalName,
-            ty,
-            footprint: Footprint::new(object::Area::LocalName(name.as_str().into()), 0, 1),
-            rights: Rights::Unknown,
-            extracted: false,
-            indexed,
-        })
+        let placed = |layout: &Layout, area| Some((area, layout.place(&name)?));
+        let place =
+            placed(&self.temporary, object::Area::Local).or_else(|| placed(&self.instance, object::Area::OpenInstance));
+        let (ty, footprint, indexed) = match place {
+            Some((area, it)) => {
+                let ty = it.ty.map_or(Type::Unknown, Elementary::operand);
+                (ty, Footprint::new(area, it.start, it.bits), false)
+            }
+            None => {
+                let ty = self.declared.get(name.as_str()).copied().unwrap_or(Type::Unknown);
+                (ty, Footprint::new(object::Area::LocalName(name.as_str().into()), 0, 1), indexed)
+            }
+        };
+        let text = text.into();
+        let (rights, extracted) = (Rights::Unknown, false);
+        self.b.object(Object { text, class: Class::LocalName, ty, footprint, rights, extracted, indexed })
     }
 
     /// `Err`: what stands for a text that is no address.
@@ -516,7 +527,12 @@ impl Machine {
                 self.open.shared = Some(Some(name.clone()));
                 object
             }
-            _ => object,
+            _ => {
+                if let Some((name, _)) = object::step7::field(data) {
+                    self.open.shared = Some(Some(name));
+                }
+                object
+            }
         }
     }
 
@@ -1183,7 +1199,10 @@ impl Machine {
                 self.end(when, range);
             }
             Op::OpenDb => self.open_block(instr, range),
-            Op::SwapDb => self.open.shared = Some(None),
+            Op::SwapDb => {
+                self.open.shared = Some(None);
+                self.b.model.opens_instance = true;
+            }
             Op::McrOpen => {
                 self.use_rlo(range, "MCR(");
                 self.limit();
@@ -1318,6 +1337,7 @@ impl Machine {
         let text = bare_text(&node);
         let upper = text.to_ascii_uppercase();
         if upper.starts_with("DI") && upper[2..].starts_with(|it: char| it.is_ascii_digit() || it == '[') {
+            self.b.model.opens_instance = true;
             return;
         }
         let has_index = is_indexed(&node);
@@ -1480,21 +1500,13 @@ fn is_bare_symbol(text: &str, mnemonics: Mnemonics) -> bool {
     is_word && !numbered && !lacks_number()
 }
 
-fn is_binary_result(text: &str) -> bool {
-    text.eq_ignore_ascii_case("BR") || text.eq_ignore_ascii_case("BIE")
+/// `"Data".speed`: more than a symbol.
+fn is_field(text: &str) -> bool {
+    ["\".", "»."].iter().any(|it| text.contains(it))
 }
 
-/// Size of a declared elementary type.
-fn declared_type(ty: &str) -> Type {
-    match ty.to_ascii_uppercase().as_str() {
-        "BOOL" => Type::Bool,
-        "BYTE" | "CHAR" => Type::Byte,
-        "WORD" | "INT" | "S5TIME" | "DATE" => Type::Word,
-        "DWORD" | "DINT" | "TIME" | "TIME_OF_DAY" | "TOD" => Type::Double,
-        "REAL" => Type::Float,
-        "TIMER" | "COUNTER" => Type::Block,
-        _ => Type::Unknown,
-    }
+fn is_binary_result(text: &str) -> bool {
+    text.eq_ignore_ascii_case("BR") || text.eq_ignore_ascii_case("BIE")
 }
 
 /// Size of a place given by a pointer: `MW [...]`, `DBB [...]`, `M [...]`.
