@@ -294,8 +294,17 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
             programs.push(program(folder, family, parts));
         }
     }
+    let mut tables: FxHashMap<&str, Vec<SourceFile>> = FxHashMap::default();
+    for &file in project.files(db).iter().filter(|it| it.detected(db) == Detected::Step7Symbols) {
+        tables.entry(folder_of(file.path(db))).or_default().push(file);
+    }
     for (family, file) in alone {
-        programs.push(program(file.path(db).to_owned(), family, vec![file]));
+        if file.detected(db) == Detected::Step7 {
+            let beside = tables.get(folder_of(file.path(db))).map_or(&[][..], Vec::as_slice);
+            programs.push(alone_with(db, file, beside));
+        } else {
+            programs.push(program(file.path(db).to_owned(), family, vec![file]));
+        }
     }
     programs.into_boxed_slice()
 }
@@ -313,12 +322,19 @@ fn apart<'db>(db: &'db dyn Db, files: Vec<SourceFile>) -> Vec<Program<'db>> {
             continue;
         }
         for &file in files {
-            programs.push(Program::new(db, file.path(db).to_owned(), Family::Step7, vec![file], tables.clone()));
+            programs.push(alone_with(db, file, &tables));
         }
     }
-    let alone = |&file: &SourceFile| Program::new(db, file.path(db).to_owned(), Family::Step7, vec![file], Vec::new());
-    programs.extend(tables.iter().map(alone));
+    programs.extend(tables.iter().map(|&it| alone_with(db, it, &[])));
     programs
+}
+
+/// A file of STEP 7 that is a program by itself: of the tables beside it, that of its own name has its symbols, else all.
+fn alone_with<'db>(db: &'db dyn Db, file: SourceFile, tables: &[SourceFile]) -> Program<'db> {
+    let stem = |it: SourceFile| Path::new(it.path(db)).file_stem();
+    let own: Vec<SourceFile> = tables.iter().copied().filter(|&it| stem(it) == stem(file)).collect();
+    let tables = if own.is_empty() { tables.to_vec() } else { own };
+    Program::new(db, file.path(db).to_owned(), Family::Step7, vec![file], tables)
 }
 
 /// Whether two files define the same entity. One that repeats its own is judged by itself.

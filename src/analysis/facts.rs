@@ -17,7 +17,7 @@ use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::layout::DataType;
 use crate::model::object::{Class, Object, Type};
-use crate::model::unit::{Access, Actual, Call, Callee, Formal, Mode, StatementKind};
+use crate::model::unit::{Access, Actual, Argument, Call, Callee, Formal, Mode, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -93,6 +93,8 @@ pub struct FactCall {
     /// Place of the instance.
     pub instance_anchor: Option<u32>,
     pub full: bool,
+    /// What a block of STEP 7 is given; objects are indices into [`UnitFacts::objects`].
+    pub arguments: Vec<Argument>,
     /// What an instance of a DFB is given; objects are indices into [`UnitFacts::objects`].
     pub actuals: Vec<Actual>,
     /// See [`Call::too_close`].
@@ -516,6 +518,7 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
                 .filter(|(range, anchor)| model.anchors.get(*anchor as usize) == Some(range))
                 .map(|it| it.1),
             full: call.full,
+            arguments: call.arguments.clone(),
             actuals: call.actuals.clone(),
             too_close: call.too_close,
         })

@@ -14,7 +14,7 @@ use super::dfb::Interface;
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
-use super::layout::DataType;
+use super::layout::{DataType, Elementary};
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use super::pl7_kinds::Kind;
@@ -290,13 +290,25 @@ pub enum Callee {
     Unknown,
 }
 
-/// A parameter of a call with what was given for it.
+/// A parameter of a call of STEP 7 with what was given for it. It holds no position, so that it may leave the unit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Argument {
-    /// Name of the parameter, where the call gives one.
+    /// Name of the parameter as written, where the call gives one.
     pub name: Option<SmolStr>,
-    pub object: Option<ObjectId>,
-    pub range: TextRange,
+    pub given: Passed,
+    /// Place of the name.
+    pub anchor: u32,
+    /// What is given, as written.
+    pub text: SmolStr,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passed {
+    Object(ObjectId),
+    /// A constant, of the type that its spelling tells.
+    Constant(Option<Elementary>),
+    /// An area by a pointer, or an operand with a mistake.
+    Other,
 }
 
 /// What a call gives to a parameter of a DFB. It holds no position, so that it may leave the unit.
@@ -450,6 +462,8 @@ pub enum OddityKind {
     MissingOperand(u32),
     /// A data block access while none was opened.
     DataBlockNotOpen,
+    /// An operation or transfer of another width or kind of number than its operand: the sentence says why.
+    OperandWidth(String),
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -13,18 +13,19 @@ use smol_str::SmolStr;
 
 use super::builder::{Builder, index};
 use super::interface;
+use super::width::Data;
 use crate::model::UnitModel;
 use crate::model::entity::{BlockKind, BlockName, Entity};
 use crate::model::expr::{Comparison, ExprId, Exprs, ObjectId, Operator};
 use crate::model::layout::{Elementary, Field, Layout, Layouts};
-use crate::model::literal::{self, Value};
+use crate::model::literal::{self, IntType, Value};
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{
-    Argument, Call, Callee, Constant, DeadCause, Formal, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind, Pin,
-    Section, StatementKind,
+    Argument, Call, Callee, Constant, DeadCause, Formal, Hollow, HollowKind, Leave, LoopKind, Mode, OddityKind, Passed,
+    Pin, Section, StatementKind,
 };
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Relation, Shift};
+use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Relation, Shift};
 use crate::syntax::{Language, Mnemonics, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
@@ -104,19 +105,20 @@ struct Accumulator {
     loads: Vec<u32>,
     /// Nothing of the block has put a value there.
     entry: bool,
+    data: Option<Data>,
 }
 
 impl Accumulator {
     fn entry() -> Self {
-        Self { value: None, loads: Vec::new(), entry: true }
+        Self { value: None, loads: Vec::new(), entry: true, data: None }
     }
 
     fn unknown() -> Self {
-        Self { value: None, loads: Vec::new(), entry: false }
+        Self { value: None, loads: Vec::new(), entry: false, data: None }
     }
 
     fn computed(value: ExprId) -> Self {
-        Self { value: Some(value), loads: Vec::new(), entry: false }
+        Self { value: Some(value), loads: Vec::new(), entry: false, data: None }
     }
 
     fn meet(&mut self, other: &Self) {
@@ -129,6 +131,7 @@ impl Accumulator {
             }
         }
         self.entry &= other.entry;
+        self.data = self.data.as_ref().zip(other.data.as_ref()).and_then(|(a, b)| a.meet(b));
     }
 }
 
@@ -193,7 +196,7 @@ struct Machine {
     back_targets: FxHashSet<SmolStr>,
     operands: FxHashMap<SmolStr, Operand>,
     /// Names that the block declares, in lower case.
-    declared: FxHashMap<SmolStr, Type>,
+    declared: FxHashMap<SmolStr, Option<Elementary>>,
     /// Where its own variables lie: in the local data, and in the instance of a function block.
     temporary: Layout,
     instance: Layout,
@@ -341,8 +344,7 @@ impl Machine {
         let (temporary, own): (Vec<Field>, Vec<Field>) =
             declared.fields().iter().cloned().partition(|it| it.section == Section::Temp);
         for it in temporary.iter().chain(&own) {
-            let ty = it.ty.elementary().map_or(Type::Unknown, Elementary::operand);
-            self.declared.insert(it.name.clone(), ty);
+            self.declared.insert(it.name.clone(), it.ty.elementary());
         }
         self.temporary = Layouts::of_temporary(&temporary);
         // What other blocks are given lies where their caller keeps it.
@@ -452,7 +454,8 @@ impl Machine {
                 (ty, Footprint::new(area, it.start, it.bits), false)
             }
             None => {
-                let ty = self.declared.get(name.as_str()).copied().unwrap_or(Type::Unknown);
+                let ty = self.declared.get(name.as_str()).copied().flatten();
+                let ty = ty.map_or(Type::Unknown, Elementary::operand);
                 (ty, Footprint::new(object::Area::LocalName(name.as_str().into()), 0, 1), indexed)
             }
         };
@@ -694,7 +697,7 @@ impl Machine {
         self.loads.push(Load { range, text, used, lost_at: None, follows, returned: false });
         let load = index(self.loads.len() - 1);
         self.last_load = Some(load);
-        let loaded = Accumulator { value: Some(value), loads: vec![load], entry: false };
+        let loaded = Accumulator { loads: vec![load], ..Accumulator::computed(value) };
         let before = std::mem::replace(&mut self.accumulators[0], loaded);
         self.accumulators[1] = before;
     }
@@ -717,6 +720,30 @@ impl Machine {
         let left = self.accumulator(1);
         let right = self.accumulator(0);
         (left, right)
+    }
+
+    /// The type of a variable that the block declares.
+    fn elementary(&self, object: ObjectId) -> Option<Elementary> {
+        let object = self.b.model.object(object);
+        if object.class != Class::LocalName {
+            return None;
+        }
+        let name = object.text.trim_start_matches('#').replace('"', "").to_lowercase();
+        let place = self.temporary.place(&name).or_else(|| self.instance.place(&name));
+        place.and_then(|it| it.ty).or_else(|| self.declared.get(name.as_str()).copied().flatten())
+    }
+
+    /// Reports operands of another width or kind than the operation is for: the first of them.
+    fn fit(&mut self, ty: NumberType, range: TextRange, instr: &ast::Instr) {
+        let mut data = self.accumulators.iter().rev().filter_map(|it| it.data.as_ref());
+        let misfit = data.find_map(|it| it.misfit(ty));
+        self.note_width(misfit, range, instr);
+    }
+
+    fn note_width(&mut self, flaw: Option<String>, range: TextRange, instr: &ast::Instr) {
+        if let Some(flaw) = flaw.filter(|_| self.b.is_reachable()) {
+            self.b.oddity(OddityKind::OperandWidth(flaw), range, mnemonic_text(instr));
+        }
     }
 
     /// Reports an instruction that needs both accumulators where the block has not filled them.
@@ -903,7 +930,7 @@ impl Machine {
             let Some(value) = arg.value() else { continue };
             let range = value.range();
             let name = arg.name().map(|it| SmolStr::new(it.text()));
-            let object = match self.operand(&value) {
+            let given = match self.operand(&value) {
                 Operand::Object(object) => {
                     let object = self.resolve(object, range);
                     let mode = match &name {
@@ -915,18 +942,20 @@ impl Machine {
                         let access = self.b.touch(object, mode, range);
                         self.b.model.accesses[access as usize].parameter = name.clone().map(Formal::Name);
                     }
-                    Some(object)
+                    Passed::Object(object)
                 }
                 Operand::Constant(_) | Operand::Other => {
+                    let text = bare_text(&value);
                     // A pointer to an area: the called block reads or writes there, and how much is not known here.
-                    if points_to_area(&bare_text(&value)) {
+                    if points_to_area(&text) {
                         self.b.model.reads_indirectly = true;
                         self.b.model.writes_indirectly = true;
                     }
-                    None
+                    constant_type(&text).map_or(Passed::Other, Passed::Constant)
                 }
             };
-            arguments.push(Argument { name, object, range });
+            let anchor = self.b.anchor(arg.name().map_or(range, |it| it.text_range()));
+            arguments.push(Argument { name, given, anchor, text: bare_text(&value) });
         }
         let anchor = self.b.anchor(callee_node.range());
         if let Some(node) = &instance_node {
@@ -950,7 +979,10 @@ impl Machine {
             .arguments
             .iter()
             .filter(|it| it.name.as_ref().is_some_and(|it| it.eq_ignore_ascii_case("RET_VAL")))
-            .filter_map(|it| it.object)
+            .filter_map(|it| match it.given {
+                Passed::Object(object) => Some(object),
+                _ => None,
+            })
             .collect();
         self.b.call(call, range);
         if !system {
@@ -1064,6 +1096,10 @@ impl Machine {
                 self.ignores_rlo(range, instr);
                 let value = self.accumulator(0);
                 if let Some((object, at)) = self.object_operand(instr) {
+                    let declared = self.elementary(object);
+                    let data = self.accumulators[0].data.as_ref();
+                    let misplaced = data.and_then(|it| it.misplaced(self.b.model.object(object), declared));
+                    self.note_width(misplaced, range, instr);
                     self.b.store(object, value, at, range);
                     self.note_write(object);
                 }
@@ -1088,7 +1124,8 @@ impl Machine {
                 }
                 self.limit();
             }
-            Op::Compare(relation, _) => {
+            Op::Compare(relation, ty) => {
+                self.fit(ty, range, instr);
                 let (left, right) = self.two_operands(range, instr);
                 let value = self.b.exprs().compare(comparison(relation), left, right);
                 self.discard(range);
@@ -1096,8 +1133,10 @@ impl Machine {
                 self.fresh = true;
                 self.overwrite(value, range);
             }
-            Op::Arithmetic(op, _) => {
+            Op::Arithmetic(op, ty) => {
                 self.ignores_rlo(range, instr);
+                self.fit(ty, range, instr);
+                let data = Data::computed(op, ty, [&self.accumulators[0].data, &self.accumulators[1].data]);
                 let (left, right) = self.two_operands(range, instr);
                 let operator = match op {
                     ArithOp::Add => Operator::Add,
@@ -1107,6 +1146,7 @@ impl Machine {
                 };
                 let value = self.b.exprs().binary(operator, left, right);
                 self.result(value);
+                self.accumulators[0].data = Some(data);
             }
             Op::Modulo => {
                 self.ignores_rlo(range, instr);
@@ -1147,8 +1187,15 @@ impl Machine {
                 }
                 self.opaque_result();
             }
-            Op::Convert(_) | Op::Real(_) => {
+            Op::Convert(by) => {
                 self.ignores_rlo(range, instr);
+                self.opaque_result();
+                self.accumulators[0].data = Data::converted(by);
+            }
+            Op::Real(_) => {
+                self.ignores_rlo(range, instr);
+                let misfit = self.accumulators[0].data.as_ref().and_then(|it| it.misfit(NumberType::Real));
+                self.note_width(misfit, range, instr);
                 self.opaque_result();
             }
             Op::Increment | Op::Decrement => {
@@ -1300,15 +1347,22 @@ impl Machine {
         self.ignores_rlo(range, instr);
         let Some(node) = instr.operand() else { return };
         let at = node.range();
-        let value = match self.operand(&node) {
+        let text = bare_text(&node);
+        let (value, data) = match self.operand(&node) {
             Operand::Object(object) => {
                 let object = self.resolve(object, at);
-                self.read(object, at)
+                let declared = self.elementary(object);
+                let data = Data::loaded(self.b.model.object(object), declared);
+                (self.read(object, at), data)
             }
-            Operand::Constant(value) => value,
-            Operand::Other => self.b.exprs().opaque(),
+            Operand::Constant(value) => {
+                let ty = constant_type(&text).flatten();
+                (value, Data::constant(self.b.exprs(), value, ty, text.clone()))
+            }
+            Operand::Other => (self.b.exprs().opaque(), None),
         };
-        self.load(value, range, bare_text(&node));
+        self.load(value, range, text);
+        self.accumulators[0].data = data;
     }
 
     fn constant_operand(&mut self, instr: &ast::Instr) -> ExprId {
@@ -1507,6 +1561,23 @@ fn is_field(text: &str) -> bool {
 
 fn is_binary_result(text: &str) -> bool {
     text.eq_ignore_ascii_case("BR") || text.eq_ignore_ascii_case("BIE")
+}
+
+/// The type that the spelling of a constant tells, `None` within where it tells none; `None` for what is no constant.
+fn constant_type(text: &str) -> Option<Option<Elementary>> {
+    Some(match literal::parse_step7(text).ok()? {
+        Value::Bool(_) => Some(Elementary::Bool),
+        Value::Int { ty: IntType::Plain, .. } => Some(Elementary::Int),
+        Value::Int { ty: IntType::Long, .. } => Some(Elementary::DoubleInt),
+        Value::Int { ty: IntType::Bits(8), .. } => Some(Elementary::Byte),
+        Value::Int { ty: IntType::Bits(16), .. } => Some(Elementary::Word),
+        Value::Int { ty: IntType::Bits(32), .. } => Some(Elementary::Double),
+        Value::Real(_) => Some(Elementary::Real),
+        Value::S5Time { .. } => Some(Elementary::S5Time),
+        Value::Time { .. } => Some(Elementary::Time),
+        Value::Int { .. } | Value::Count(_) | Value::Text(_) => None,
+        Value::Other => return None,
+    })
 }
 
 /// Size of a place given by a pointer: `MW [...]`, `DBB [...]`, `M [...]`.

@@ -12,6 +12,7 @@ mod pl7;
 mod pl72;
 mod st;
 mod symbol_table;
+mod width;
 mod work;
 mod xref;
 

@@ -304,6 +304,14 @@ fn data_item(name: BlockName, item: &str, compact: &str) -> Result<Place, Addres
     Ok(Place { class: Class::Data, ty: Type::Unknown, area, start: 0 })
 }
 
+/// Whether an operand names data by an address: `DB1.DBW 2`, `DBX 0.0`, `DIW 4`.
+pub fn is_data_address(text: &str) -> bool {
+    let item = text.rsplit_once("DB").or_else(|| text.rsplit_once("db")).or_else(|| text.split_once("DI"));
+    let item = item.or_else(|| text.split_once("di")).map_or("", |it| it.1);
+    let number = item.strip_prefix(['X', 'B', 'W', 'D', 'x', 'b', 'w', 'd']).unwrap_or_default().trim_start();
+    !number.is_empty() && number.bytes().all(|it| it.is_ascii_digit() || it == b'.')
+}
+
 /// The data block and the field of an object that is named by both, so that the declaration alone tells its place:
 /// `DB1.poids`, `"Data".speed[3]`. The path is in lower case.
 pub fn field(object: &Object) -> Option<(BlockName, SmolStr)> {
