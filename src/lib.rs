@@ -8,6 +8,7 @@
 pub mod analysis;
 pub mod cli;
 pub mod db;
+pub mod draw;
 pub mod lint;
 pub mod model;
 pub mod report;

@@ -24,7 +24,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 continue;
             }
             let raises = cx.settings.events().iter().filter_map(|it| it.trigger.as_ref());
-            let is_trigger = raises.into_iter().any(|it| it.0.footprint.overlaps(&object.footprint));
+            let is_trigger = raises.into_iter().any(|it| it.get_ref().0.footprint.overlaps(&object.footprint));
             if is_trigger || used.covers(&object.footprint) || used.covers(&by_name) {
                 continue;
             }

@@ -17,7 +17,7 @@ use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::layout::DataType;
 use crate::model::object::{Class, Object, Type};
-use crate::model::unit::{Access, Actual, Argument, Call, Callee, Formal, Mode, StatementKind};
+use crate::model::unit::{Access, Actual, Argument, Call, Callee, Formal, Index, Mode, Pin, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -40,7 +40,7 @@ pub struct Use {
     pub skipped_by: Option<u32>,
     /// For an edge test: a run of the unit may make it without the unit's own write of the object.
     pub stale: bool,
-    /// For writes: the constant that is written, when it is one.
+    /// For writes, and for a block that takes its preset: the constant that is written, when it is one.
     pub constant: Option<i64>,
     /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever. For other writes: the object
     /// takes its own value, so that nothing changes.
@@ -122,6 +122,8 @@ pub struct UnitFacts {
     /// In execution order.
     pub uses: Vec<Use>,
     pub calls: Vec<FactCall>,
+    /// What stands in the brackets of indexed objects; an object is one of `objects`.
+    pub indexes: Vec<Index>,
     /// Pairs of calls, by index, that never run in the same scan.
     pub exclusive_calls: Vec<(u32, u32)>,
     /// Pairs of uses, by anchor, the smaller first, that never take effect in the same scan: of a set, reset or edge
@@ -162,6 +164,16 @@ const MAX_COMPARED: usize = 48;
 const MAX_COMPARISONS: u32 = 1000;
 
 impl UnitFacts {
+    /// The function block of an instance that the unit declares: `#motor`.
+    pub fn type_of_instance(&self, name: &str) -> Option<&BlockName> {
+        let name = name.trim_matches(['#', '"', ' ']).to_lowercase();
+        let declared = self.declared.as_deref()?.fields().iter().find(|it| it.name == name)?;
+        match &declared.ty {
+            DataType::Named(block) => Some(block),
+            _ => None,
+        }
+    }
+
     /// Whether a place is one of structured text.
     pub fn is_structured_text(&self, anchor: u32) -> bool {
         match self.chart.as_ref().filter(|_| self.language.is_chart()) {
@@ -174,11 +186,16 @@ impl UnitFacts {
         let numbers = numbers(model);
         let mut given = Given { values: vec![None; model.accesses.len()], whens: vec![None; model.accesses.len()] };
         let mut conditional_calls: FxHashSet<u32> = FxHashSet::default();
+        let mut presets: FxHashMap<u32, ExprId> = FxHashMap::default();
         for (at, statement) in model.statements.iter().enumerate() {
             let at = u32::try_from(at).unwrap_or(u32::MAX);
             match statement.kind {
                 StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
                     set(&mut given.values, access, value);
+                }
+                StatementKind::Drive { access, pin: Pin::Preset, when, value: Some(value) } => {
+                    presets.insert(access, value);
+                    set(&mut given.whens, access, when);
                 }
                 StatementKind::Set { access, when }
                 | StatementKind::Reset { access, when }
@@ -208,7 +225,8 @@ impl UnitFacts {
                     Some(StatementKind::Call(call)) => Some(*call),
                     _ => None,
                 };
-                let constant = value.and_then(|it| match *model.exprs.get(it) {
+                let preset = || presets.get(&u32::try_from(at).ok()?).copied();
+                let constant = value.or_else(preset).and_then(|it| match *model.exprs.get(it) {
                     Expr::Int(value) => Some(value),
                     Expr::Bool(value) => Some(i64::from(value)),
                     _ => None,
@@ -250,6 +268,7 @@ impl UnitFacts {
             objects: objects.map(|((at, object), number)| FactObject::new(object, number, missed(at))).collect(),
             uses,
             calls: calls(model),
+            indexes: model.indexes.clone(),
             exclusive_calls: exclusive_calls(model),
             exclusive_uses: exclusive_uses(model, &given),
             instance_of: model.instance_of.clone(),

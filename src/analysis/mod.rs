@@ -3,6 +3,7 @@
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
 pub mod calls;
+pub mod capacity;
 pub mod channels;
 pub mod chart;
 pub mod conditions;
@@ -33,4 +34,18 @@ pub struct Site {
     pub unit: u32,
     /// Index into the anchors of the unit's model.
     pub anchor: u32,
+}
+
+impl Site {
+    /// Instead of a unit: the file of the configuration.
+    const CONFIGURATION: u32 = u32::MAX;
+
+    /// A key or value of the configuration, by its number among them.
+    pub fn configured(anchor: u32) -> Self {
+        Self { unit: Self::CONFIGURATION, anchor }
+    }
+
+    pub fn is_configured(self) -> bool {
+        self.unit == Self::CONFIGURATION
+    }
 }

@@ -691,14 +691,7 @@ fn target(facts: &UnitFacts, callee: &Callee) -> Option<UnitName> {
         Callee::Subroutine(number) => Some(UnitName::Subroutine(*number)),
         Callee::Block(name) => Some(UnitName::Block(name.clone())),
         Callee::Instance(name) => Some(UnitName::Instance(key(name))),
-        Callee::LocalInstance(name) => {
-            let name = name.trim_matches(['#', '"', ' ']).to_lowercase();
-            let declared = facts.declared.as_deref()?.fields().iter().find(|it| it.name == name)?;
-            match &declared.ty {
-                DataType::Named(block) => Some(UnitName::Block(block.clone())),
-                _ => None,
-            }
-        }
+        Callee::LocalInstance(name) => Some(UnitName::Block(facts.type_of_instance(name)?.clone())),
         Callee::Function(_) | Callee::Unknown => None,
     }
 }

@@ -11,15 +11,17 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::facts::{FactObject, UnitFacts};
-use crate::model::entity::{BlockKind, BlockName, Entity};
-use crate::model::object::{AddressError, Area, Class, Footprint, Object, Type, pl7, step7};
+use crate::model::entity::{BlockKind, BlockName, Entity, Family};
+use crate::model::object::{Area, Class, Footprint, Object, Type, pl7, pl72, step7};
 use crate::model::symbols::key;
 use crate::model::unit::{Callee, Mode, Pin};
 use crate::syntax::Mnemonics;
 
 /// The symbols of a program, by [`key`], and the symbols of addresses.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SymbolTable {
+    /// Whose addresses symbols name.
+    family: Family,
     addresses: FxHashMap<SmolStr, Meaning>,
     /// Symbol of an address in upper case, in each mnemonic set.
     names: FxHashMap<SmolStr, SmolStr>,
@@ -33,19 +35,19 @@ enum Meaning {
 }
 
 impl SymbolTable {
-    pub fn new<'a>(units: impl IntoIterator<Item = &'a UnitFacts>) -> Self {
-        let mut table = Self::default();
+    pub fn new<'a>(family: Family, units: impl IntoIterator<Item = &'a UnitFacts>) -> Self {
+        let mut table = Self { family, addresses: FxHashMap::default(), names: FxHashMap::default() };
         for symbol in units.into_iter().flat_map(|it| &it.symbols) {
             let meaning = match &symbol.object {
                 Some(object) => {
-                    let address = SmolStr::from(object.text.to_ascii_uppercase());
-                    if !is_pl7(&address) {
+                    let address = table.spelling(&object.text);
+                    let name = table.shown(&symbol.name);
+                    if family == Family::Step7 {
                         for it in [Mnemonics::German, Mnemonics::English] {
                             let other = step7::translated(&address, it).map(SmolStr::from);
-                            table.names.extend(other.map(|it| (it, shown(&symbol.name))));
+                            table.names.extend(other.map(|it| (it, name.clone())));
                         }
                     }
-                    let name = if is_pl7(&address) { symbol.name.clone() } else { shown(&symbol.name) };
                     table.names.entry(address.clone()).or_insert(name);
                     Meaning::Address(address)
                 }
@@ -57,6 +59,18 @@ impl SymbolTable {
             }
         }
         table
+    }
+
+    /// An address as the table has it. The percent sign is no part of those of PL7-2.
+    fn spelling(&self, address: &str) -> SmolStr {
+        let upper = SmolStr::from(address.to_ascii_uppercase());
+        let bare = upper.strip_prefix('%').filter(|_| self.family == Family::Pl72);
+        bare.map(SmolStr::from).unwrap_or(upper)
+    }
+
+    /// A symbol as code writes it.
+    fn shown(&self, name: &str) -> SmolStr {
+        if self.family == Family::Step7 { format_smolstr!("\"{name}\"") } else { name.into() }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -81,7 +95,7 @@ impl SymbolTable {
                 return Some((name.trim_matches([' ', '\u{a0}', '\u{202f}']), rest));
             }
         }
-        let base = symbol.find(['.', ':']).filter(|_| !self.addresses.contains_key(&key(symbol)));
+        let base = symbol.find(['.', ':', ',']).filter(|_| !self.addresses.contains_key(&key(symbol)));
         symbol.split_at_checked(base.unwrap_or(symbol.len()))
     }
 
@@ -99,11 +113,11 @@ impl SymbolTable {
 
     /// The symbol of an address as written, in the form in which items of an object inherit it.
     pub fn symbol(&self, address: &str) -> Option<SmolStr> {
-        let address = address.to_ascii_uppercase();
+        let address = self.spelling(address);
         if let Some(name) = self.names.get(address.as_str()) {
             return Some(name.clone());
         }
-        let base = address.rfind([':', '.'])?;
+        let base = address.rfind([':', '.', ','])?;
         let (object, rest) = address.split_at_checked(base)?;
         let is_item = rest.starts_with(':') || rest.get(1..).is_some_and(|it| it.starts_with(char::is_alphabetic));
         let name = self.names.get(object).filter(|_| is_item)?;
@@ -124,7 +138,7 @@ impl SymbolTable {
             // The odd parts stand between two of the quotes, but for one behind an unpaired quote.
             let is_closed = at % 2 == 0 && at > 1;
             let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
-            let other = if is_pl7(name) { self.symbol(name) } else { self.address(name).or_else(|| self.symbol(name)) };
+            let other = self.symbol(name).or_else(|| self.address(name));
             if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
                 out.truncate(out.len() - part.len());
                 out.push_str(" (`");
@@ -139,46 +153,34 @@ impl SymbolTable {
     /// What a symbol used in code names, under the text that the code gives it.
     fn resolve(&self, object: &Object) -> Option<Object> {
         let text = object.text.as_str();
-        if let Some((block, path)) = step7::field(object) {
-            let number = self.block(&block)?;
-            return Some(Object {
-                footprint: Footprint::new(step7::field_area(&number, &path), 0, 1),
-                ..object.clone()
-            });
-        }
         match (&object.footprint.area, object.class) {
             (_, Class::Symbol) => {}
             (Area::Data(block), _) => {
                 let area = Area::Data(self.block(block)?);
                 return Some(Object { footprint: Footprint { area, ..object.footprint.clone() }, ..object.clone() });
             }
+            (Area::Symbol(_), _) => {
+                let (block, path) = step7::field(object)?;
+                let area = step7::field_area(&self.block(&block)?, &path);
+                return Some(Object { footprint: Footprint::new(area, 0, 1), ..object.clone() });
+            }
             _ => return None,
         }
-        let resolved = if object.indexed {
+        let resolved = if self.family == Family::Pl72 {
+            pl72::parse(&self.address(text)?).map(|it| it.object)
+        } else if self.family == Family::Step7 {
+            step7::parse_either(&self.address(text)?)
+        } else if object.indexed {
             let (name, rest) = text.split_once('[')?;
             let suffix = rest.rsplit_once(']').map(|it| it.1).filter(|it| !it.is_empty());
             pl7::parse_indexed(&self.address(name)?, suffix)
         } else {
-            parse(&self.address(text)?)
+            pl7::parse(&self.address(text)?)
         };
         let resolved = resolved.ok()?;
         // An array of a data block that is indexed is none of its first element.
         Some(Object { text: object.text.clone(), indexed: object.indexed, ..resolved })
     }
-}
-
-/// Whether an address is one of PL7: those of STEP 7 begin with a letter.
-fn is_pl7(address: &str) -> bool {
-    address.starts_with('%')
-}
-
-fn parse(address: &str) -> Result<Object, AddressError> {
-    if is_pl7(address) { pl7::parse(address) } else { step7::parse_either(address) }
-}
-
-/// A symbol of STEP 7 as code writes it.
-fn shown(name: &str) -> SmolStr {
-    format_smolstr!("\"{name}\"")
 }
 
 /// The facts of the units of a program with every symbol that the table knows replaced by its object.
@@ -308,7 +310,7 @@ mod tests {
     }
 
     fn table(text: &str) -> SymbolTable {
-        SymbolTable::new([&facts(text, Language::Exchange)])
+        SymbolTable::new(Family::Pl7, [&facts(text, Language::Exchange)])
     }
 
     const VARIABLES: &str = "VAR_GLOBAL\nPump AT %M0 : EBOOL; Etat AT %MW4 : WORD; Tempo AT %TM0 : TM;\n\
@@ -381,6 +383,25 @@ mod tests {
             assert_eq!(found.1, expected.1, "{}", found.0);
         }
         assert!(matches!(resolve(&table, &[&facts("! %M1 := %M2;", Language::Pl7St)])[0], Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn symbols_of_pl7_2() {
+        let variables = "VAR_GLOBAL\nDepart AT I0,05 : BOOL; Pompe AT %B3 : BOOL; Mot AT W10; Tempo AT T0;\nEND_VAR\n";
+        let table = SymbolTable::new(Family::Pl72, [&facts(variables, Language::Exchange)]);
+        assert_eq!(table.address("pompe").as_deref(), Some("B3"));
+        assert_eq!(table.symbol("T0,D").as_deref(), Some("Tempo,D"));
+        assert_eq!(table.symbol("i0,05").as_deref(), Some("Depart"));
+        assert_eq!(table.annotate("`B3` and `mot`"), "`B3` (`Pompe`) and `mot` (`W10`)");
+        let code = facts(
+            "RUNG L1:\nOPEN_CONTACT(Depart),H_LINK(8),COIL(Pompe);\nOPEN_CONTACT(Autre),H_LINK(8),COIL(B4);\nEND_RUNG\n",
+            Language::Pl72Ld,
+        );
+        let resolved = resolve(&table, &[&code]);
+        let shown: Vec<_> = resolved[0].objects.iter().map(|it| (it.object.text.as_str(), it.object.class)).collect();
+        let expected =
+            [("Depart", Class::Input), ("Autre", Class::Symbol), ("Pompe", Class::Memory), ("B4", Class::Memory)];
+        assert_eq!(shown, expected);
     }
 
     #[test]

@@ -230,6 +230,8 @@ pub struct Grid<'t> {
     pub placed: Vec<Placed<'t>>,
     /// Cells of each row. Of a number beyond all limits, as many as show that it is.
     pub rows: Vec<Row<'t>>,
+    /// Vertical links: each leads from a row to the one below, at the left edge of a column; both from 0.
+    pub vertical: Vec<(u32, u32)>,
     wires: Vec<Junction>,
     open_links: Vec<TextRange>,
 }
@@ -272,11 +274,20 @@ struct Rows {
 
 impl<'t> Grid<'t> {
     pub fn new(rung: Rung<'t>, layout: Layout) -> Self {
-        let mut grid = Self { layout, placed: Vec::new(), rows: Vec::new(), wires: Vec::new(), open_links: Vec::new() };
+        let mut grid = Self {
+            layout,
+            placed: Vec::new(),
+            rows: Vec::new(),
+            vertical: Vec::new(),
+            wires: Vec::new(),
+            open_links: Vec::new(),
+        };
         let mut rows = Rows::default();
         for row in rung.rows() {
             grid.read_row(row, &mut rows);
         }
+        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
+        grid.vertical = rows.links.iter().map(|it| (number(it.0), number(it.1))).collect();
         grid.wire(&rows);
         grid
     }

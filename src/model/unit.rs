@@ -387,7 +387,7 @@ pub struct Loop {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Index {
     pub what: IndexKind,
-    pub range: TextRange,
+    pub anchor: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -16,6 +16,8 @@ mod scan;
 pub mod split;
 pub mod stx;
 pub mod symlist;
+#[cfg(test)]
+mod testing;
 pub mod walk;
 
 pub use heading::entity_from_address;

@@ -121,7 +121,8 @@ impl Pl7 {
             Some(index) => {
                 let index = self.b.object(index);
                 self.b.read(index, range);
-                self.b.model.indexes.push(Index { what: IndexKind::Object(index), range });
+                let anchor = self.b.anchor(range);
+                self.b.model.indexes.push(Index { what: IndexKind::Object(index), anchor });
             }
             None => {
                 self.b.model.addresses.insert(address.into(), id);

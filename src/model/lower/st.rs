@@ -435,7 +435,7 @@ mod tests {
                     IndexKind::Constant(value) => value.to_string(),
                     IndexKind::Computed => "computed".to_owned(),
                 };
-                (what, &text[std::ops::Range::<usize>::from(it.range)])
+                (what, &text[std::ops::Range::<usize>::from(model.place(it.anchor))])
             })
             .collect();
         let expected = [("%MW2", "%MW2"), ("4", "4"), ("computed", "%MW1 + 1"), ("%KW3", "%KW3")];
