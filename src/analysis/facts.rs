@@ -327,7 +327,7 @@ fn is_own_value(model: &UnitModel, value: ExprId, object: ObjectId) -> bool {
     matches!(model.exprs.get(value), Expr::Read { object: read, .. } if *read == object)
 }
 
-/// Whether a condition reads the object, looking at its first terms.
+/// Whether a condition or value reads the object, looking at its first terms.
 fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
     const MAX_TERMS: usize = 128;
     let mut stack = vec![value];
@@ -335,8 +335,8 @@ fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
         match stack.pop().map(|it| exprs.get(it)) {
             None => return false,
             Some(Expr::Read { object: read, .. }) if *read == object => return true,
-            Some(Expr::Not(a)) => stack.push(*a),
-            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b)) => stack.extend([*a, *b]),
+            Some(Expr::Not(a) | Expr::Negate(a)) => stack.push(*a),
+            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) | Expr::Binary(_, a, b)) => stack.extend([*a, *b]),
             Some(_) => {}
         }
     }

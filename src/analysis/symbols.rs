@@ -139,7 +139,9 @@ impl SymbolTable {
             let is_closed = at % 2 == 0 && at > 1;
             let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
             let other = self.symbol(name).or_else(|| self.address(name));
-            if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
+            // A rule about symbols names them without the quotes that code puts around them.
+            let is_named = |it: &str| [it, it.trim_matches('"')].iter().any(|it| message.contains(&format!("`{it}`")));
+            if let Some(other) = other.filter(|it| !is_named(it) && done.insert(name)) {
                 out.truncate(out.len() - part.len());
                 out.push_str(" (`");
                 out.push_str(&other);
