@@ -8,8 +8,9 @@ use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::chart::ChartFacts;
+use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
-use super::{conditions, gaps};
+use super::gaps;
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
@@ -247,7 +248,7 @@ impl UnitFacts {
                         .filter(|_| access.mode.is_edge() || matches!(access.mode, Mode::EdgeMemory | Mode::Drive(_)))
                         .and_then(|it| Some(model.jumps.get(it as usize)?.anchor)),
                     stale: access.mode.is_edge()
-                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(&model.exprs, access.path, &[])),
+                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(model, access.path, &[])),
                     constant,
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
@@ -258,7 +259,7 @@ impl UnitFacts {
             })
             .collect();
         let missed = |at: u32| {
-            let it = writes.get(&at).filter(|it| it.leave_out(&model.exprs, Exprs::TRUE, &exits))?;
+            let it = writes.get(&at).filter(|it| it.leave_out(model, Exprs::TRUE, &exits))?;
             Some(it.first().0)
         };
         let objects = (0..).zip(&model.objects).zip(numbers);
@@ -505,7 +506,7 @@ fn same_drive(model: &UnitModel, given: &Given, first: (u32, &Access), second: (
         return true;
     }
     let (a, b) = (effective(model, first, a.path), effective(model, second, b.path));
-    conditions::together(&model.exprs, &[a.0, a.1, b.0, b.1]) == conditions::Verdict::Never
+    Space::of(model).together(&[a.0, a.1, b.0, b.1]) == Verdict::Never
 }
 
 /// Path to a write, and the condition at the instruction itself. A pin of a timer or counter takes 0 as well as 1: the
@@ -567,7 +568,7 @@ fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
         for other in others {
             let (a, path_a, call_a) = conditional[other];
             let all = [path_a, call_a.when, path_b, call_b.when];
-            if conditions::together(&model.exprs, &all) == conditions::Verdict::Never {
+            if Space::of(model).together(&all) == Verdict::Never {
                 pairs.push((a, b));
             }
         }

@@ -490,6 +490,26 @@ impl<'t> Grid<'t> {
         !self.wires[wire.0 as usize].right.is_empty()
     }
 
+    /// The horizontal link through which all power goes to the `(#)` of a transition, and to nothing else: its place, and how
+    /// many cells it has.
+    pub fn link_before_end(&self) -> Option<(TextRange, u32)> {
+        let mut ends = self.placed.iter().filter(|it| it.element == Some(Element::HashCoil));
+        let end = ends.next().filter(|_| ends.next().is_none())?;
+        let link = |wire: Wire| match self.wires[wire.0 as usize] {
+            Junction { ref left, ref right, .. } if wire != Wire::RAIL && left.len() == 1 && right.len() == 1 => {
+                self.left_of(wire).next().filter(|it| it.element == Some(Element::HLink))
+            }
+            _ => None,
+        };
+        let last = link(*end.inputs.first()?)?;
+        let (place, mut cells, mut at) = (last.range(), last.width, last);
+        while let Some(before) = at.inputs.first().and_then(|it| link(*it)).filter(|it| it.range() == place) {
+            (cells, at) = (cells + before.width, before);
+        }
+        let all: u32 = self.placed.iter().filter(|it| it.range() == place).map(|it| it.width).sum();
+        (cells == all).then_some((place, cells))
+    }
+
     /// What the input of a DFB at the right end of a wire is given.
     pub fn input_actual(&self, wire: Wire) -> Option<&Placed<'t>> {
         self.placed.get(self.wires[wire.0 as usize].input_actual? as usize)
