@@ -48,3 +48,30 @@ pub fn listing(bytes: &[u8], encoding: Option<Encoding>) -> Result<SourceText, &
     }
     Ok(SourceText { text: text.into(), encoding, bom: false, malformed: false, mixed: false })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::testing::table;
+
+    const FIELDS: [(&str, u8); 5] = [("_SKZ", 24), ("_OPIEC", 12), ("_OPHIST", 12), ("_DATATYP", 10), ("_COMMENT", 80)];
+
+    #[test]
+    fn rows_become_lines() {
+        let bytes = table(
+            &FIELDS,
+            &[
+                &["MAIN_CONTACTOR", "Q       4.0", "A       4.0", "BOOL", "Main \"K1\""],
+                &["Old", "", "A       4.1", "BOOL", ""],
+                &["Motor", "FB      1", "FB      1", "FB      1", ""],
+            ],
+        );
+        let text = listing(&bytes, None).unwrap().text;
+        let expected = "\"MAIN_CONTACTOR\",\"Q 4.0\",\"BOOL\",\"Main K1\"\n\"Old\",\"A 4.1\",\"BOOL\",\"\"\n\
+                        \"Motor\",\"FB 1\",\"FB 1\",\"\"\n";
+        assert_eq!(&*text, expected);
+        assert_eq!(listing(&bytes[..bytes.len() / 2], None).err(), Some(DAMAGED));
+        assert_eq!(listing(&table(&[("_SKZ", 24)], &[]), None).err(), Some(DAMAGED));
+        assert!(is_table(Path::new("p/YDBs/3/symlist.dbf")) && !is_table(Path::new("p/YDBs/SYMLISTS.DBF")));
+    }
+}
