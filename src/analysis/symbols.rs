@@ -12,7 +12,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::facts::{FactObject, UnitFacts};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family};
-use crate::model::object::{Area, Class, Footprint, Object, Type, pl7, pl72, step7};
+use crate::model::object::{Area, Class, Footprint, Object, Type, pl7, pl72, step5, step7};
 use crate::model::symbols::key;
 use crate::model::unit::{Callee, Mode, Pin};
 use crate::syntax::Mnemonics;
@@ -80,6 +80,8 @@ impl SymbolTable {
     /// The address of a symbol. An item or bit that has no symbol of its own goes by that of its object: `Etat:X1`,
     /// `Tempo.Q`, a table by that of its first word (PL7:1234-1242).
     pub fn address(&self, symbol: &str) -> Option<SmolStr> {
+        // STEP 5 marks symbols in code.
+        let symbol = symbol.strip_prefix('-').unwrap_or(symbol);
         let (name, rest) = self.parts(symbol)?;
         match self.addresses.get(&key(name))? {
             Meaning::Address(address) if rest.is_empty() => Some(address.clone()),
@@ -168,7 +170,9 @@ impl SymbolTable {
             }
             _ => return None,
         }
-        let resolved = if self.family == Family::Pl72 {
+        let resolved = if self.family == Family::Step5 {
+            step5::parse_any(&self.address(text)?)
+        } else if self.family == Family::Pl72 {
             pl72::parse(&self.address(text)?).map(|it| it.object)
         } else if self.family == Family::Step7 {
             step7::parse_either(&self.address(text)?)

@@ -142,6 +142,8 @@ fn input(path: String, bytes: &[u8], explicit: bool, settings: &Settings, dialec
         | Detected::Pasted(_)
         | Detected::Pl72
         | Detected::Pl72Exchange
+        | Detected::Step5
+        | Detected::Step5Symbols
         | Detected::Step7
         | Detected::Step7Symbols
         | Detected::Stx => {

@@ -108,6 +108,7 @@ impl<'a> Space<'a> {
     pub fn of(model: &'a UnitModel) -> Self {
         let family = match model.language {
             Language::Awl(_) => Family::Step7,
+            Language::Step5(_) | Language::Step5Symbols => Family::Step5,
             language if language.is_pl7_2() => Family::Pl72,
             _ => Family::Pl7,
         };
@@ -371,7 +372,7 @@ impl<'a> Space<'a> {
         let is_held = bit.is_fixed() && word.is_fixed() && word.footprint.contains(&bit.footprint);
         let at = bit.footprint.start.checked_sub(word.footprint.start).filter(|_| is_held)?;
         // Siemens words have their most significant byte first.
-        Some(if self.family == Family::Step7 { (width / 8 - 1 - at / 8) * 8 + at % 8 } else { at })
+        Some(if self.family.has_blocks() { (width / 8 - 1 - at / 8) * 8 + at % 8 } else { at })
     }
 }
 

@@ -1,0 +1,312 @@
+//! Declarations, addresses and constants.
+
+use rowan::TextRange;
+use smol_str::SmolStr;
+
+use super::Machine;
+use crate::model::entity::BlockKind;
+use crate::model::expr::{ExprId, Exprs, ObjectId};
+use crate::model::layout::{Elementary, Field, Layout, Layouts};
+use crate::model::literal::{self, IntType, Value};
+use crate::model::lower::interface;
+use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
+use crate::model::unit::{Constant, OddityKind, Section};
+use crate::syntax::awl::ast;
+use crate::syntax::{AstNode as _, Language, Mnemonics, SyntaxKind, SyntaxNode};
+
+#[derive(Debug, Clone)]
+pub(super) enum Operand {
+    Object(ObjectId),
+    /// The constant, and how it was written.
+    Constant(ExprId),
+    /// A word that is neither: a label, a block.
+    Other,
+}
+
+impl Machine {
+    pub(super) fn declarations(&mut self, block: SyntaxNode<'_>) {
+        let sections = block.children().filter_map(ast::VarSection::cast);
+        for decl in sections.flat_map(ast::VarSection::decls) {
+            self.initial_value(decl.init());
+        }
+        let declared = match self.is_step5() {
+            true => self.formal_operands(block),
+            false => interface::declared(block, &mut self.b),
+        };
+        let (temporary, own): (Vec<Field>, Vec<Field>) =
+            declared.fields().iter().cloned().partition(|it| it.section == Section::Temp);
+        for it in temporary.iter().chain(&own) {
+            self.declared.insert(it.name.clone(), it.ty.elementary());
+        }
+        self.temporary = Layouts::of_temporary(&temporary);
+        // What other blocks are given lies where their caller keeps it, and what those of STEP 5 are given, too.
+        if self.b.model.entity.block_kind() == Some(BlockKind::Fb) && !self.is_step5() {
+            self.instance = Layouts::of_fields(&own);
+        }
+        self.b.model.declared = Some(declared);
+    }
+
+    /// The type of a variable that the block declares.
+    pub(super) fn elementary(&self, object: ObjectId) -> Option<Elementary> {
+        let object = self.b.model.object(object);
+        if object.class != Class::LocalName {
+            return None;
+        }
+        let name = object.text.trim_start_matches('#').replace('"', "").to_lowercase();
+        let place = self.temporary.place(&name).or_else(|| self.instance.place(&name));
+        place.and_then(|it| it.ty).or_else(|| self.declared.get(name.as_str()).copied().flatten())
+    }
+
+    /// Reads the constant of `:= S5T#1S`. Repetitions and lists of array elements are left alone.
+    pub(super) fn initial_value(&mut self, value: Option<ast::InitValue>) {
+        let Some(value) = value else { return };
+        let mut text = smol_str::SmolStrBuilder::new();
+        let mut range: Option<TextRange> = None;
+        for token in value.tokens() {
+            if !matches!(
+                token.kind(),
+                SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::Plus | SyntaxKind::Minus
+            ) {
+                return;
+            }
+            text.push_str(token.text());
+            range = Some(range.map_or(token.text_range(), |it| it.cover(token.text_range())));
+        }
+        if let Some(range) = range {
+            self.constant(&text.finish(), range);
+        }
+    }
+
+    pub(super) fn operand(&mut self, node: &ast::Operand) -> Operand {
+        let text = bare_text(node);
+        if let Some(known) = self.operands.get(&text) {
+            return known.clone();
+        }
+        if let Language::Step5(mnemonics) = self.language {
+            let operand = self.step5_operand(node, &text, mnemonics);
+            if let Operand::Object(object) = operand
+                && !self.modified
+                && !self.is_place_dependent(object)
+            {
+                self.operands.insert(text, operand.clone());
+            }
+            return operand;
+        }
+        let range = node.range();
+        let first = first_kind(node);
+        let has_index = is_indexed(node);
+        // An element of an array by its number has one place.
+        let is_number = |it: ast::Operand<'_>| matches!(first_kind(&it), Some(SyntaxKind::Number | SyntaxKind::Minus));
+        let is_fixed = !has_index || node.indices().all(is_number);
+        let operand = match first {
+            Some(
+                SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::CharString | SyntaxKind::PointerConstant,
+            )
+            | Some(SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Hash) => return self.constant(&text, range),
+            Some(SyntaxKind::LocalName) => Operand::Object(self.local(&text, has_index)),
+            Some(SyntaxKind::QuotedSymbol) if is_fixed && is_field(&text) => match self.address(&text, range) {
+                Ok(object) => Operand::Object(object),
+                Err(object) => return Operand::Object(object),
+            },
+            Some(SyntaxKind::QuotedSymbol) if !has_index => {
+                let mut object = Object::symbol(&text);
+                object.indexed = has_index;
+                Operand::Object(self.b.object(object))
+            }
+            Some(SyntaxKind::LBrack) => Operand::Object(self.indirect(&text, Type::Unknown)),
+            Some(_) if !is_fixed => {
+                for inner in node.indices() {
+                    if let Operand::Object(object) = self.operand(&inner) {
+                        self.b.read(object, inner.range());
+                    }
+                }
+                // Not cached: the index is read each time.
+                let ty = indirect_type(&text);
+                return Operand::Object(self.indirect(&text, ty));
+            }
+            Some(_) => match text.to_ascii_uppercase().as_str() {
+                "TRUE" => Operand::Constant(Exprs::TRUE),
+                "FALSE" => Operand::Constant(Exprs::FALSE),
+                "AR1" | "AR2" => Operand::Other,
+                // Not cached when it is none: each place is reported.
+                _ => match self.address(&text, range) {
+                    Ok(object) => Operand::Object(object),
+                    Err(object) => return Operand::Object(object),
+                },
+            },
+            None => Operand::Other,
+        };
+        if !matches!(operand, Operand::Other) {
+            self.operands.insert(text, operand.clone());
+        }
+        operand
+    }
+
+    /// Whether the same text may be another object, or is to be reported, at another place.
+    fn is_place_dependent(&self, object: ObjectId) -> bool {
+        let class = self.b.model.objects[object.0 as usize].class;
+        matches!(class, Class::Indirect | Class::PeripheralInput | Class::PeripheralOutput)
+    }
+
+    pub(super) fn indirect(&mut self, text: &str, ty: Type) -> ObjectId {
+        self.b.object(Object {
+            text: text.into(),
+            class: Class::Indirect,
+            ty,
+            footprint: Footprint::new(object::Area::Indirect, 0, 1),
+            rights: Rights::Unknown,
+            extracted: false,
+            indexed: false,
+        })
+    }
+
+    pub(super) fn local(&mut self, text: &str, indexed: bool) -> ObjectId {
+        let name = text.trim_start_matches('#').replace('"', "").to_lowercase();
+        let placed = |layout: &Layout, area| Some((area, layout.place(&name)?));
+        let place =
+            placed(&self.temporary, object::Area::Local).or_else(|| placed(&self.instance, object::Area::OpenInstance));
+        let (ty, footprint, indexed) = match place {
+            Some((area, it)) => {
+                let ty = it.ty.map_or(Type::Unknown, Elementary::operand);
+                (ty, Footprint::new(area, it.start, it.bits), false)
+            }
+            None => {
+                let ty = self.declared.get(name.as_str()).copied().flatten();
+                let ty = ty.map_or(Type::Unknown, Elementary::operand);
+                (ty, Footprint::new(object::Area::LocalName(name.as_str().into()), 0, 1), indexed)
+            }
+        };
+        let text = text.into();
+        let (rights, extracted) = (Rights::Unknown, false);
+        self.b.object(Object { text, class: Class::LocalName, ty, footprint, rights, extracted, indexed })
+    }
+
+    /// `Err`: what stands for a text that is no address.
+    pub(super) fn address(&mut self, text: &str, range: TextRange) -> Result<ObjectId, ObjectId> {
+        let root = text.split(['.', '[']).next().unwrap_or_default().to_lowercase();
+        if self.declared.contains_key(root.as_str()) {
+            return Ok(self.local(text, false));
+        }
+        let Language::Awl(mnemonics) = self.language else { return Ok(self.b.object(Object::symbol(text))) };
+        match object::step7::parse(text, mnemonics) {
+            Ok(object) => Ok(self.b.object(object)),
+            Err(error) if error.suggestion.is_none() && is_bare_symbol(text, mnemonics) => {
+                Ok(self.b.object(Object::symbol(text)))
+            }
+            Err(error) => Err(self.no_address(text, error, range)),
+        }
+    }
+
+    pub(super) fn constant(&mut self, text: &SmolStr, range: TextRange) -> Operand {
+        let read = if self.is_step5() { literal::parse_step5(text) } else { literal::parse_step7(text) };
+        let value = match read {
+            Ok(value) => value,
+            Err(error) => {
+                self.b.oddity(OddityKind::Literal(error), range, text.clone());
+                return Operand::Constant(self.b.exprs().opaque());
+            }
+        };
+        let expr = match &value {
+            Value::Bool(value) => Exprs::bool(*value),
+            Value::Int { value, .. } => self.b.exprs().int(*value),
+            Value::Count(value) => self.b.exprs().int(i64::from(*value)),
+            Value::Real(value) => self.b.exprs().float(*value),
+            Value::S5Time { .. } | Value::Time { .. } | Value::Text(_) | Value::Other => self.b.exprs().text(text),
+        };
+        if matches!(value, Value::S5Time { .. } | Value::Time { .. }) {
+            self.b.model.constants.push(Constant { value, range, text: text.clone() });
+        }
+        Operand::Constant(expr)
+    }
+
+    pub(super) fn object_operand(&mut self, instr: &ast::Instr) -> Option<(ObjectId, TextRange)> {
+        let node = instr.operand()?;
+        match self.operand(&node) {
+            Operand::Object(object) => {
+                let range = node.range();
+                Some((self.resolve(object, range), range))
+            }
+            Operand::Constant(_) | Operand::Other => None,
+        }
+    }
+
+    /// Records a read of a bit or word.
+    pub(super) fn read(&mut self, object: ObjectId, range: TextRange) -> ExprId {
+        let indirect = self.b.model.objects[object.0 as usize].class == Class::Indirect;
+        self.b.model.reads_indirectly |= indirect;
+        if indirect {
+            self.b.read(object, range);
+            return self.b.exprs().opaque();
+        }
+        self.b.read(object, range)
+    }
+
+    pub(super) fn note_write(&mut self, object: ObjectId) {
+        if self.b.model.objects[object.0 as usize].class == Class::Indirect {
+            self.b.model.writes_indirectly = true;
+            self.b.wipe();
+        }
+    }
+}
+
+/// Whether a word that is no address may be a symbol without its quotes: it has not the form of one, letters and a
+/// number, and a number is not all that it lacks.
+pub(super) fn is_bare_symbol(text: &str, mnemonics: Mnemonics) -> bool {
+    let letters = text.bytes().take_while(u8::is_ascii_alphabetic).count();
+    let numbered = letters <= 4 && text.as_bytes().get(letters).is_some_and(u8::is_ascii_digit);
+    let is_word = text.chars().all(|it| it.is_alphanumeric() || matches!(it, '_' | '.'));
+    let lacks_number = || ["0", "0.0"].iter().any(|it| object::step7::parse(&format!("{text}{it}"), mnemonics).is_ok());
+    is_word && !numbered && !lacks_number()
+}
+
+/// The type that the spelling of a constant tells, `None` within where it tells none; `None` for what is no constant.
+pub(super) fn constant_type(text: &str) -> Option<Option<Elementary>> {
+    Some(match literal::parse_step7(text).ok()? {
+        Value::Bool(_) => Some(Elementary::Bool),
+        Value::Int { ty: IntType::Plain, .. } => Some(Elementary::Int),
+        Value::Int { ty: IntType::Long, .. } => Some(Elementary::DoubleInt),
+        Value::Int { ty: IntType::Bits(8), .. } => Some(Elementary::Byte),
+        Value::Int { ty: IntType::Bits(16), .. } => Some(Elementary::Word),
+        Value::Int { ty: IntType::Bits(32), .. } => Some(Elementary::Double),
+        Value::Real(_) => Some(Elementary::Real),
+        Value::S5Time { .. } => Some(Elementary::S5Time),
+        Value::Time { .. } => Some(Elementary::Time),
+        Value::Int { .. } | Value::Count(_) | Value::Text(_) => None,
+        Value::Other => return None,
+    })
+}
+
+/// `"Data".speed`: more than a symbol.
+fn is_field(text: &str) -> bool {
+    ["\".", "»."].iter().any(|it| text.contains(it))
+}
+
+/// Size of a place given by a pointer: `MW [...]`, `DBB [...]`, `M [...]`.
+pub(super) fn indirect_type(text: &str) -> Type {
+    let prefix = text.split('[').next().unwrap_or_default().to_ascii_uppercase();
+    match prefix.as_str() {
+        "T" | "C" | "Z" | "DB" | "DI" | "FB" | "FC" => Type::Block,
+        it if it.len() > 1 && it.ends_with('B') => Type::Byte,
+        it if it.ends_with('W') => Type::Word,
+        it if it.len() > 1 && it.ends_with('D') => Type::Double,
+        "" => Type::Unknown,
+        _ => Type::Bool,
+    }
+}
+
+/// The operand without blanks: `M0.0`, `DB5.DBW0`.
+pub(super) fn bare_text(operand: &ast::Operand) -> SmolStr {
+    let mut text = smol_str::SmolStrBuilder::new();
+    for token in operand.tokens() {
+        text.push_str(token.text());
+    }
+    text.finish()
+}
+
+pub(super) fn first_kind(operand: &ast::Operand) -> Option<SyntaxKind> {
+    operand.first_token().map(|it| it.kind())
+}
+
+pub(super) fn is_indexed(operand: &ast::Operand) -> bool {
+    operand.syntax().children_with_tokens().any(|it| it.kind() == SyntaxKind::LBrack)
+}
