@@ -71,7 +71,8 @@ fn flaw(layout: &Layout, block: &BlockName, access: &Footprint, text: &str) -> O
         }
         (Some(it), _) if within(it) => {
             // Halves of a number are what parts of it are meant to be: not the two bytes in its middle.
-            let is_off = access.bits == 16 && it.bits == 32 && it.ty.is_some() && (access.start - it.start) % 16 != 0;
+            let is_off =
+                access.bits == 16 && it.bits == 32 && it.ty.is_some() && !(access.start - it.start).is_multiple_of(16);
             is_off.then(|| {
                 (format!("`{text}` is the middle of `{}`, which has {} bits", it.path, it.bits), first.clone())
             })

@@ -134,9 +134,10 @@ impl Data {
             }
             Some(Elementary::Real) if self.kind == Kind::Integer => "takes a floating-point number".to_owned(),
             _ if bits == 8 && self.sum_of_words => {
-                return Some(format!(
+                return Some(
                     "takes the low byte of a word: the sum, difference or product of words before it needs 16 bits"
-                ));
+                        .to_owned(),
+                );
             }
             _ => return None,
         };
