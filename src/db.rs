@@ -18,6 +18,7 @@ use smol_str::SmolStr;
 
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
+use crate::analysis::fields;
 use crate::analysis::program::ProgramIndex;
 use crate::analysis::symbols::{self, SymbolTable};
 use crate::draw::{self, Drawing, Mark};
@@ -262,7 +263,7 @@ pub struct Program<'db> {
 fn unit_family(db: &dyn Db, unit: Unit<'_>) -> Option<Family> {
     match unit.language(db) {
         Language::Exchange => family(unit.file(db).detected(db)),
-        Language::Awl(_) => Some(Family::Step7),
+        Language::Awl(_) | Language::SymbolTable => Some(Family::Step7),
         Language::Step5(_) | Language::Step5Symbols => Some(Family::Step5),
         language if language.is_pl7_2() => Some(Family::Pl72),
         _ => Some(Family::Pl7),
@@ -308,6 +309,7 @@ fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
 /// machine side by side) or hold code that does not say what it is: those stand alone. Where whole applications lie beside
 /// exports of their parts, each application is a program, and the other files are one, to which files of variables belong.
 /// Among variants, the files of variables serve each.
+/// Of a STEP 7 project, the sources of each program may lie in a folder of their own.
 #[salsa::tracked(returns(deref))]
 pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     let project = db.project();
@@ -338,6 +340,22 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
             programs.push(Program::new(db, folder, family, files, Vec::new(), false));
             continue;
         }
+        if family == Family::Step7 {
+            let (tables, code): (Vec<SourceFile>, Vec<SourceFile>) =
+                files.into_iter().partition(|&it| it.detected(db) == Detected::Step7Symbols);
+            let parent = |it: &SourceFile| parent_of(it.path(db));
+            for files in code.chunk_by(|a, b| parent(a) == parent(b)) {
+                match files.first() {
+                    Some(first) if files.len() < code.len() && !clash(db, files, family) => {
+                        let key = parent(first).to_owned();
+                        programs.push(Program::new(db, key, family, files.to_vec(), tables.clone(), false));
+                    }
+                    _ => alone.extend(files.iter().map(|&file| (family, file, Vec::new(), true))),
+                }
+            }
+            alone.extend(tables.into_iter().map(|file| (family, file, Vec::new(), false)));
+            continue;
+        }
         let (whole, parts): (Vec<SourceFile>, Vec<SourceFile>) =
             files.into_iter().partition(|&it| is_application(db, it, family));
         let is_clash = clash(db, &whole, family);
@@ -351,10 +369,22 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
         alone.extend(code.into_iter().map(|file| (family, file, variables.clone(), true)));
         alone.extend(variables.into_iter().map(|file| (family, file, Vec::new(), false)));
     }
+    let is_table = |it: &SourceFile| it.detected(db) == Detected::Step7Symbols;
+    let tables: Vec<SourceFile> = project.files(db).iter().copied().filter(is_table).collect();
     for (family, file, variables, is_variant) in alone {
+        let is_code = file.detected(db) == Detected::Step7;
+        let variables = if is_code { own_tables(db, file, &tables) } else { variables };
         programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file], variables, is_variant));
     }
     programs.into_boxed_slice()
+}
+
+/// The symbol tables of a file of STEP 7 that is a program by itself: of those beside it that of its own name, else all.
+fn own_tables(db: &dyn Db, file: SourceFile, tables: &[SourceFile]) -> Vec<SourceFile> {
+    let (stem, folder) = (|it: SourceFile| Path::new(it.path(db)).file_stem(), |it: SourceFile| folder_of(it.path(db)));
+    let beside: Vec<SourceFile> = tables.iter().copied().filter(|&it| folder(it) == folder(file)).collect();
+    let own: Vec<SourceFile> = beside.iter().copied().filter(|&it| stem(it) == stem(file)).collect();
+    if own.is_empty() { beside } else { own }
 }
 
 /// Whether two files define the same entity. One that repeats its own is judged by itself.
@@ -366,8 +396,24 @@ fn clash(db: &dyn Db, files: &[SourceFile], family: Family) -> bool {
     })
 }
 
-fn folder_of(path: &str) -> &str {
+fn parent_of(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |it| it.0)
+}
+
+/// The folders of a STEP 7 project in which its sources, its symbols and its blocks lie.
+const PROJECT_FOLDERS: [&str; 3] = ["s7asrcom", "YDBs", "ombstx"];
+
+/// The folder that a file belongs to: of a STEP 7 project, that of the project.
+fn folder_of(path: &str) -> &str {
+    let folder = parent_of(path);
+    let mut start = 0;
+    for part in folder.split('/') {
+        if PROJECT_FOLDERS.iter().any(|it| it.eq_ignore_ascii_case(part)) {
+            return folder.get(..start).unwrap_or_default().trim_end_matches('/');
+        }
+        start += part.len() + 1;
+    }
+    folder
 }
 
 /// The vendor family of a file that is linted.
@@ -376,7 +422,7 @@ pub fn family(detected: Detected) -> Option<Family> {
         Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
         Detected::Pl72 | Detected::Pl72Exchange => Some(Family::Pl72),
         Detected::Step5 | Detected::Step5Symbols => Some(Family::Step5),
-        Detected::Step7 => Some(Family::Step7),
+        Detected::Step7 | Detected::Step7Symbols => Some(Family::Step7),
         _ => None,
     }
 }
@@ -424,7 +470,8 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
 /// The facts of a program's units, symbols resolved.
 fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Cow<'db, UnitFacts>> {
     let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
-    symbols::resolve(symbol_table(db, program), &facts)
+    let facts = symbols::resolve(symbol_table(db, program), &facts);
+    if program.family(db) == Family::Step7 { fields::resolve(facts) } else { facts }
 }
 
 /// The index of a program, of its [`program_facts`].
@@ -1031,6 +1078,7 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),
+        (Detected::Step7Symbols, _) => "STEP 7 symbol table".to_owned(),
         (Detected::Stx, _) => "PL7 project, by its cross-reference".to_owned(),
         (Detected::Pl72Exchange, _) => "PL7-2 exchange file".to_owned(),
         (_, Some(Language::Pl72Ld)) => "PL7-2 ladder".to_owned(),

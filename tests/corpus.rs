@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use plclint::db::{self, Input};
 use plclint::lint::settings::{self, Folders, Overrides, Settings};
-use plclint::lint::{Location, Outcome};
+use plclint::lint::{Diagnostic, Location, Outcome};
 use plclint::report::{self, Format, Options};
 use plclint::source::detect::{self, Dialect, FileHint};
 
@@ -123,6 +123,30 @@ fn clean_programs_have_no_finding() {
             assert_eq!(findings(&check(files, select)), "", "{name}");
         }
     }
+}
+
+/// The same program in both mnemonic sets, with its symbols in two forms.
+#[test]
+fn both_mnemonic_sets_have_the_same_findings() {
+    let folders = folders();
+    let found = |name: &str| {
+        let (_, files) = folders.iter().find(|it| it.0 == name).expect("a folder of the corpus");
+        let outcome = check(files, Some("all"));
+        let place = |it: &Diagnostic| (it.finding.rule.code, at_line(&outcome, it.finding.place));
+        let mut found: Vec<_> = outcome.diagnostics.iter().map(place).collect();
+        found.sort_unstable();
+        found
+    };
+    let german = found("programs/convoyeur-s7");
+    assert!(german.len() > 5);
+    assert_eq!(german, found("programs/convoyeur-s7-en"));
+}
+
+/// Whether a place is in code, and its line.
+fn at_line(outcome: &Outcome, at: Location) -> (bool, usize) {
+    let file = &outcome.files[at.file as usize];
+    let line = file.text[..usize::from(at.range.start())].matches('\n').count();
+    (file.path.ends_with(".awl"), line)
 }
 
 /// What a finding says, and the text of the lines that it points at with the column: the same however the program was

@@ -19,6 +19,8 @@ struct Example {
     controller: Option<String>,
     /// ```` ```toml,example ```` before it: the `plclint.toml` that it is checked with.
     config: String,
+    /// ```` ```sdf,example ```` before it: the symbol table of the program.
+    table: String,
     text: String,
 }
 
@@ -28,6 +30,8 @@ fn examples(rule: &Rule) -> Vec<Example> {
     let mut skip = false;
     let mut config: Option<String> = None;
     let mut next_config = String::new();
+    let mut table: Option<String> = None;
+    let mut next_table = String::new();
     for (line, text) in rule.page.lines().enumerate() {
         if let Some(example) = &mut open {
             if text.trim_end() == "```" {
@@ -41,12 +45,22 @@ fn examples(rule: &Rule) -> Vec<Example> {
             } else {
                 writeln!(open, "{text}").expect("a string");
             }
+        } else if let Some(open) = &mut table {
+            if text.trim_end() == "```" {
+                next_table = table.take().unwrap_or_default();
+            } else {
+                writeln!(open, "{text}").expect("a string");
+            }
         } else if skip {
             skip = text.trim_end() != "```";
         } else if let Some(info) = text.strip_prefix("```") {
             let (language, verdict) = info.split_once(',').unwrap_or((info, ""));
             if info == "toml,example" {
                 config = Some(String::new());
+                continue;
+            }
+            if info == "sdf,example" {
+                table = Some(String::new());
                 continue;
             }
             if language == "toml" {
@@ -71,13 +85,14 @@ fn examples(rule: &Rule) -> Vec<Example> {
                 other => panic!("{}: line {}: language `{other}`", rule.name, line + 1),
             };
             assert!(matches!(verdict, "bad" | "good"), "{}: line {}: `{info}`", rule.name, line + 1);
-            let config = std::mem::take(&mut next_config);
+            let (config, table) = (std::mem::take(&mut next_config), std::mem::take(&mut next_table));
             open = Some(Example {
                 line: line + 1,
                 dialect,
                 bad: verdict == "bad",
                 controller,
                 config,
+                table,
                 text: String::new(),
             });
         }
@@ -93,7 +108,11 @@ fn found(example: &Example) -> Vec<(&'static str, String)> {
     let settings = Settings::parse(&example.config, name, Folders::default(), overrides).expect("settings");
     let extension = if example.dialect == Dialect::Step7 { "awl" } else { "txt" };
     let input = Input::from_text(&format!("example.{extension}"), &example.text, example.dialect);
-    let outcome = db::check(vec![input], settings);
+    let mut inputs = vec![input];
+    if !example.table.is_empty() {
+        inputs.push(Input::from_text("example.sdf", &example.table, Dialect::Auto));
+    }
+    let outcome = db::check(inputs, settings);
     assert_eq!(outcome.internal_errors, [""; 0]);
     let open = outcome.diagnostics.into_iter().filter(|it| it.suppressed.is_none());
     open.map(|it| (it.finding.rule.code, it.finding.message)).collect()
@@ -164,7 +183,8 @@ fn every_dialect_has_its_examples() {
 fn programs_that_fill_the_memory() {
     let has = |dialect: Dialect, text: String| {
         let controller = Some("TSX 37-05".to_owned());
-        let example = Example { line: 0, dialect, bad: true, controller, config: String::new(), text };
+        let example =
+            Example { line: 0, dialect, bad: true, controller, config: String::new(), table: String::new(), text };
         found(&example).iter().any(|it| it.0 == "M003")
     };
     let list = |sentences: usize| "!    LD   %I1.0\n     ST   %Q2.0\n".repeat(sentences);

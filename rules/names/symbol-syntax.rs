@@ -1,19 +1,24 @@
-//! N001: a symbol that PL7 does not take, or that two objects share.
+//! N001: a symbol that the vendor's tool does not take, or that two objects share.
 
 use rustc_hash::FxHashMap;
 
 use crate::analysis::Site;
+use crate::analysis::facts::FactSymbol;
 use crate::lint::{ProgramCx, Sink};
+use crate::model::entity::Family;
 use crate::model::symbols::key;
 use crate::syntax::pl7::is_reserved;
 use crate::target::pl7::SYMBOL_LENGTH;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    if cx.program.family == Family::Step7 {
+        repeated(cx, sink);
+    }
     let mut seen: FxHashMap<_, (Site, Option<&str>)> = FxHashMap::default();
     for (unit, facts) in (0..).zip(&cx.program.units) {
         for symbol in &facts.symbols {
             let site = Site { unit, anchor: symbol.anchor };
-            if let Some(flaw) = flaw(&symbol.name) {
+            if let Some(flaw) = flaw(&symbol.name).filter(|_| cx.program.family == Family::Pl7) {
                 sink.report(site, format!("the symbol `{}` {flaw}", symbol.name));
             }
             let address = symbol.object.as_ref().map(|it| it.text.as_str());
@@ -29,6 +34,31 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 sink.report(site, format!("the symbol `{}` is given to two objects, {one} and {other}", symbol.name))
                     .label("again here")
                     .related(first, "first here");
+            }
+        }
+    }
+}
+
+/// Rows of one table that repeat a symbol or an address: STEP 7 marks both, and takes neither.
+fn repeated(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    for (unit, facts) in (0..).zip(&cx.program.units) {
+        let mut names: FxHashMap<_, &FactSymbol> = FxHashMap::default();
+        let mut places: FxHashMap<_, &FactSymbol> = FxHashMap::default();
+        for symbol in &facts.symbols {
+            let site = |it: &FactSymbol| Site { unit, anchor: it.anchor };
+            let Some(object) = &symbol.object else { continue };
+            let before = *names.entry(key(&symbol.name)).or_insert(symbol);
+            let is_again = !std::ptr::eq(before, symbol);
+            let is_same = |it: &FactSymbol| it.object.as_ref().is_some_and(|it| it.footprint == object.footprint);
+            if is_again && is_same(before) {
+                sink.report(site(symbol), format!("the symbol `{}` stands twice in this table", symbol.name))
+                    .label("again here")
+                    .related(site(before), "first here");
+            }
+            let first = *places.entry((&object.footprint, object.ty)).or_insert(symbol);
+            if !is_again && !std::ptr::eq(first, symbol) {
+                let message = format!("`{}` has two symbols, `{}` and `{}`", object.text, first.name, symbol.name);
+                sink.report(site(symbol), message).label("again here").related(site(first), "first here");
             }
         }
     }

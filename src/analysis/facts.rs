@@ -17,8 +17,9 @@ use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
+use crate::model::layout::DataType;
 use crate::model::object::{Class, Object, Type};
-use crate::model::unit::{Access, Actual, Call, Callee, Formal, Index, Mode, Pin, Section, StatementKind};
+use crate::model::unit::{Access, Actual, Argument, Call, Callee, Formal, Index, Mode, Pin, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -94,19 +95,12 @@ pub struct FactCall {
     /// Place of the instance.
     pub instance_anchor: Option<u32>,
     pub full: bool,
+    /// What a block of STEP 7 is given; objects are indices into [`UnitFacts::objects`].
+    pub arguments: Vec<Argument>,
     /// What an instance of a DFB is given; objects are indices into [`UnitFacts::objects`].
     pub actuals: Vec<Actual>,
     /// See [`Call::too_close`].
     pub too_close: Option<u32>,
-}
-
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FactDeclaration {
-    /// In lower case.
-    pub name: SmolStr,
-    pub section: Section,
-    /// As written, blanks removed.
-    pub ty: SmolStr,
 }
 
 /// A symbol that the unit declares for the program.
@@ -139,8 +133,10 @@ pub struct UnitFacts {
     pub exclusive_uses: Vec<(u32, u32)>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
-    /// Parameters and variables that the block declares.
-    pub declared: Vec<FactDeclaration>,
+    /// Whether it opens another data block in place of its instance.
+    pub opens_instance: bool,
+    /// What a block of STEP 7 declares.
+    pub declared: Option<Box<DataType>>,
     pub symbols: Vec<FactSymbol>,
     pub instructions: u32,
     /// Anchor of the first operation of PL7 that can overflow.
@@ -172,6 +168,16 @@ const MAX_COMPARED: usize = 48;
 const MAX_COMPARISONS: u32 = 1000;
 
 impl UnitFacts {
+    /// The function block of an instance that the unit declares: `#motor`.
+    pub fn type_of_instance(&self, name: &str) -> Option<&BlockName> {
+        let name = name.trim_matches(['#', '"', ' ']).to_lowercase();
+        let declared = self.declared.as_deref()?.fields().iter().find(|it| it.name == name)?;
+        match &declared.ty {
+            DataType::Named(block) => Some(block),
+            _ => None,
+        }
+    }
+
     /// Whether a place is one of structured text.
     pub fn is_structured_text(&self, anchor: u32) -> bool {
         match self.chart.as_ref().filter(|_| self.language.is_chart()) {
@@ -270,11 +276,8 @@ impl UnitFacts {
             exclusive_calls: exclusive_calls(model),
             exclusive_uses: exclusive_uses(model, &given),
             instance_of: model.instance_of.clone(),
-            declared: model
-                .declarations
-                .iter()
-                .map(|it| FactDeclaration { name: it.name.clone(), section: it.section, ty: it.ty.clone() })
-                .collect(),
+            opens_instance: model.opens_instance,
+            declared: model.declared.clone().map(Box::new),
             symbols: model
                 .symbols
                 .iter()
@@ -329,7 +332,7 @@ fn is_own_value(model: &UnitModel, value: ExprId, object: ObjectId) -> bool {
     matches!(model.exprs.get(value), Expr::Read { object: read, .. } if *read == object)
 }
 
-/// Whether a condition reads the object, looking at its first terms.
+/// Whether a condition or value reads the object, looking at its first terms.
 fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
     const MAX_TERMS: usize = 128;
     let mut stack = vec![value];
@@ -337,8 +340,8 @@ fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
         match stack.pop().map(|it| exprs.get(it)) {
             None => return false,
             Some(Expr::Read { object: read, .. }) if *read == object => return true,
-            Some(Expr::Not(a)) => stack.push(*a),
-            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b)) => stack.extend([*a, *b]),
+            Some(Expr::Not(a) | Expr::Negate(a)) => stack.push(*a),
+            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) | Expr::Binary(_, a, b)) => stack.extend([*a, *b]),
             Some(_) => {}
         }
     }
@@ -539,6 +542,7 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
                 .filter(|(range, anchor)| model.anchors.get(*anchor as usize) == Some(range))
                 .map(|it| it.1),
             full: call.full,
+            arguments: call.arguments.clone(),
             actuals: call.actuals.clone(),
             too_close: call.too_close,
         })

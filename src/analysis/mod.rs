@@ -16,6 +16,7 @@ pub mod drives;
 pub mod edges;
 pub mod facts;
 pub mod features;
+pub mod fields;
 pub mod flow;
 pub mod gaps;
 pub mod known;

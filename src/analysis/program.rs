@@ -9,10 +9,12 @@ use smol_str::SmolStr;
 use super::Site;
 use super::chart::{self, Actions, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
+use super::fields;
 use super::sequences::Sequences;
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
+use crate::model::layout::{DataType, Layouts, Place};
 use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
 use crate::model::unit::{Actual, Callee, Formal, Given, Mode, Pin, Section};
@@ -269,6 +271,7 @@ pub struct ProgramIndex<'a> {
     actions: OnceCell<Actions<'a>>,
     sequences: OnceCell<Sequences<'a>>,
     sequence_charts: OnceCell<Vec<Chart<'a>>>,
+    layouts: OnceCell<Layouts>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -279,7 +282,7 @@ impl<'a> ProgramIndex<'a> {
         let mut callers = vec![Vec::new(); units.len()];
         for (unit, facts) in units.iter().enumerate() {
             for (index, it) in facts.calls.iter().enumerate() {
-                let target = target(&it.callee).and_then(|key| names.get(&key).copied());
+                let target = target(facts, &it.callee).and_then(|key| names.get(&key).copied());
                 if let Some(target) = target.filter(|_| it.reachable) {
                     callers[target as usize].push(as_index(calls.len()));
                 }
@@ -324,6 +327,7 @@ impl<'a> ProgramIndex<'a> {
             actions: OnceCell::new(),
             sequences: OnceCell::new(),
             sequence_charts: OnceCell::new(),
+            layouts: OnceCell::new(),
         }
     }
 
@@ -345,6 +349,24 @@ impl<'a> ProgramIndex<'a> {
     /// The actions of their steps.
     pub fn actions(&self) -> &Actions<'a> {
         self.actions.get_or_init(|| Actions::new(&self.units))
+    }
+
+    /// Where the fields of the blocks of STEP 7 lie.
+    pub fn layouts(&self) -> &Layouts {
+        self.layouts.get_or_init(|| fields::layouts(self.units.iter().copied()))
+    }
+
+    /// Where the field at a place of a block is declared: in the block, or in the type that it goes by.
+    pub fn declaration(&self, block: &BlockName, place: &Place) -> Option<Site> {
+        let mut unit = self.unit_named(place.of.as_ref().unwrap_or(block))?;
+        // Data of a type, which may be data of another.
+        for _ in 0..self.units.len() {
+            match self.units.get(unit as usize)?.declared.as_deref()? {
+                DataType::Named(of) => unit = self.unit_named(of)?,
+                _ => return Some(Site { unit, anchor: place.anchor }),
+            }
+        }
+        None
     }
 
     /// The object of the program that an object of a unit is, by index; `None` for one that no other unit knows.
@@ -680,12 +702,13 @@ fn unit_names(units: &[&UnitFacts]) -> FxHashMap<UnitName, u32> {
     names
 }
 
-fn target(callee: &Callee) -> Option<UnitName> {
+fn target(facts: &UnitFacts, callee: &Callee) -> Option<UnitName> {
     match callee {
         Callee::Subroutine(number) => Some(UnitName::Subroutine(*number)),
         Callee::Block(name) => Some(UnitName::Block(name.clone())),
         Callee::Instance(name) => Some(UnitName::Instance(key(name))),
-        Callee::LocalInstance(_) | Callee::Function(_) | Callee::Unknown => None,
+        Callee::LocalInstance(name) => Some(UnitName::Block(facts.type_of_instance(name)?.clone())),
+        Callee::Function(_) | Callee::Unknown => None,
     }
 }
 
@@ -884,7 +907,8 @@ fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit:
     let facts = units[target as usize];
     match formal {
         Formal::Name(name) => {
-            let declared = facts.declared.iter().find(|it| it.name.eq_ignore_ascii_case(name));
+            let mut declared = facts.declared.as_deref().map_or(&[][..], DataType::fields).iter();
+            let declared = declared.find(|it| it.name.eq_ignore_ascii_case(name));
             match declared.map(|it| it.section) {
                 Some(Section::Input) => Mode::Read,
                 Some(Section::Output) => Mode::Output,

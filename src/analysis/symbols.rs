@@ -1,5 +1,7 @@
 //! Symbols of a program: which address each names, and the facts of units with addresses in place of symbols.
 //!
+//! In PL7 a symbol stands for an address; in STEP 7 also for a block, and `"Data".DBW0` for a place in one.
+//!
 //! Resolution comes between the facts of units and [`ProgramIndex`](super::program::ProgramIndex): after it, `Pump` and
 //! `%M0` are one object. A unit that uses no symbol is passed on as it is.
 
@@ -9,10 +11,11 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::facts::{FactObject, UnitFacts};
-use crate::model::entity::Family;
-use crate::model::object::{Class, Object, Type, pl7, pl72, step5};
+use crate::model::entity::{BlockKind, BlockName, Entity, Family};
+use crate::model::object::{Area, Class, Footprint, Object, Type, pl7, pl72, step5, step7};
 use crate::model::symbols::key;
-use crate::model::unit::Mode;
+use crate::model::unit::{Callee, Mode, Pin};
+use crate::syntax::Mnemonics;
 
 /// The symbols of a program, by [`key`], and the symbols of addresses.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,7 +23,7 @@ pub struct SymbolTable {
     /// Whose addresses symbols name.
     family: Family,
     addresses: FxHashMap<SmolStr, Meaning>,
-    /// Symbol of an address in upper case.
+    /// Symbol of an address in upper case, in each mnemonic set.
     names: FxHashMap<SmolStr, SmolStr>,
 }
 
@@ -38,7 +41,14 @@ impl SymbolTable {
             let meaning = match &symbol.object {
                 Some(object) => {
                     let address = table.spelling(&object.text);
-                    table.names.entry(address.clone()).or_insert_with(|| symbol.name.clone());
+                    let name = table.shown(&symbol.name);
+                    if family == Family::Step7 {
+                        for it in [Mnemonics::German, Mnemonics::English] {
+                            let other = step7::translated(&address, it).map(SmolStr::from);
+                            table.names.extend(other.map(|it| (it, name.clone())));
+                        }
+                    }
+                    table.names.entry(address.clone()).or_insert(name);
                     Meaning::Address(address)
                 }
                 None => Meaning::Unknown,
@@ -58,6 +68,11 @@ impl SymbolTable {
         bare.map(SmolStr::from).unwrap_or(upper)
     }
 
+    /// A symbol as code writes it.
+    fn shown(&self, name: &str) -> SmolStr {
+        if self.family == Family::Step7 { format_smolstr!("\"{name}\"") } else { name.into() }
+    }
+
     pub fn is_empty(&self) -> bool {
         self.addresses.is_empty()
     }
@@ -67,11 +82,33 @@ impl SymbolTable {
     pub fn address(&self, symbol: &str) -> Option<SmolStr> {
         // STEP 5 marks symbols in code.
         let symbol = symbol.strip_prefix('-').unwrap_or(symbol);
-        let base = symbol.find(['.', ':', ',']).unwrap_or(symbol.len());
-        let (name, rest) = symbol.split_at_checked(base)?;
+        let (name, rest) = self.parts(symbol)?;
         match self.addresses.get(&key(name))? {
             Meaning::Address(address) if rest.is_empty() => Some(address.clone()),
             Meaning::Address(address) => Some(format_smolstr!("{address}{rest}")),
+            Meaning::Unknown => None,
+        }
+    }
+
+    /// A symbol, without its quotes, and what stands behind it. That of STEP 7 may itself have a point in it.
+    fn parts<'s>(&self, symbol: &'s str) -> Option<(&'s str, &'s str)> {
+        for (open, close) in [('"', '"'), ('«', '»')] {
+            if let Some((name, rest)) = symbol.strip_prefix(open).and_then(|it| it.split_once(close)) {
+                return Some((name.trim_matches([' ', '\u{a0}', '\u{202f}']), rest));
+            }
+        }
+        let base = symbol.find(['.', ':', ',']).filter(|_| !self.addresses.contains_key(&key(symbol)));
+        symbol.split_at_checked(base.unwrap_or(symbol.len()))
+    }
+
+    /// The number of a block that a program names by a symbol.
+    pub fn block(&self, name: &BlockName) -> Option<BlockName> {
+        let BlockName::Symbol(symbol) = name else { return None };
+        match self.addresses.get(&key(symbol))? {
+            Meaning::Address(address) => match step7::parse_either(address).ok()?.footprint.area {
+                Area::CodeBlock(name) => Some(name),
+                _ => None,
+            },
             Meaning::Unknown => None,
         }
     }
@@ -104,7 +141,9 @@ impl SymbolTable {
             let is_closed = at % 2 == 0 && at > 1;
             let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
             let other = self.symbol(name).or_else(|| self.address(name));
-            if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
+            // A rule about symbols names them without the quotes that code puts around them.
+            let is_named = |it: &str| [it, it.trim_matches('"')].iter().any(|it| message.contains(&format!("`{it}`")));
+            if let Some(other) = other.filter(|it| !is_named(it) && done.insert(name)) {
                 out.truncate(out.len() - part.len());
                 out.push_str(" (`");
                 out.push_str(&other);
@@ -117,14 +156,26 @@ impl SymbolTable {
 
     /// What a symbol used in code names, under the text that the code gives it.
     fn resolve(&self, object: &Object) -> Option<Object> {
-        if object.class != Class::Symbol {
-            return None;
-        }
         let text = object.text.as_str();
+        match (&object.footprint.area, object.class) {
+            (_, Class::Symbol) => {}
+            (Area::Data(block), _) => {
+                let area = Area::Data(self.block(block)?);
+                return Some(Object { footprint: Footprint { area, ..object.footprint.clone() }, ..object.clone() });
+            }
+            (Area::Symbol(_), _) => {
+                let (block, path) = step7::field(object)?;
+                let area = step7::field_area(&self.block(&block)?, &path);
+                return Some(Object { footprint: Footprint::new(area, 0, 1), ..object.clone() });
+            }
+            _ => return None,
+        }
         let resolved = if self.family == Family::Step5 {
             step5::parse_any(&self.address(text)?)
         } else if self.family == Family::Pl72 {
             pl72::parse(&self.address(text)?).map(|it| it.object)
+        } else if self.family == Family::Step7 {
+            step7::parse_either(&self.address(text)?)
         } else if object.indexed {
             let (name, rest) = text.split_once('[')?;
             let suffix = rest.rsplit_once(']').map(|it| it.1).filter(|it| !it.is_empty());
@@ -132,7 +183,9 @@ impl SymbolTable {
         } else {
             pl7::parse(&self.address(text)?)
         };
-        Some(Object { text: object.text.clone(), ..resolved.ok()? })
+        let resolved = resolved.ok()?;
+        // An array of a data block that is indexed is none of its first element.
+        Some(Object { text: object.text.clone(), indexed: object.indexed, ..resolved })
     }
 }
 
@@ -143,16 +196,19 @@ pub fn resolve<'a>(table: &SymbolTable, units: &[&'a UnitFacts]) -> Vec<Cow<'a, 
 
 fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFacts> {
     let found: Vec<Option<Object>> = facts.objects.iter().map(|it| table.resolve(&it.object)).collect();
-    if found.iter().all(Option::is_none) {
+    if found.iter().all(Option::is_none) && !names_blocks(facts) {
         return Cow::Borrowed(facts);
     }
     let mut facts = facts.clone();
+    resolve_blocks(table, &mut facts);
     for it in &mut facts.uses {
         // Without its type, a symbol that takes a value is a word or a bit by what it takes.
         if let Some(Some(object)) = found.get(it.object as usize) {
             it.mode = match (it.mode, object.ty) {
                 (Mode::Assign | Mode::AssignNot, ty) if ty != Type::Bool => Mode::Store,
                 (Mode::Store, Type::Bool) => Mode::Assign,
+                (Mode::Set, Type::Block) => Mode::Drive(Pin::Preset),
+                (Mode::Reset, Type::Block) => Mode::Drive(Pin::Reset),
                 (mode, _) => mode,
             };
         }
@@ -166,10 +222,53 @@ fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFa
     Cow::Owned(facts)
 }
 
+/// Whether a unit names blocks, itself too, by symbols.
+fn names_blocks(facts: &UnitFacts) -> bool {
+    let is_symbol = |it: &BlockName| matches!(it, BlockName::Symbol(_));
+    facts.entity.name().is_some_and(is_symbol)
+        || facts.instance_of.as_ref().is_some_and(is_symbol)
+        || facts.declared.as_deref().is_some_and(|it| {
+            let mut found = false;
+            it.each_named(&mut |it| found |= is_symbol(it));
+            found
+        })
+        || facts.calls.iter().any(|it| {
+            matches!(&it.callee, Callee::Block(name) if is_symbol(name)) || it.instance.as_ref().is_some_and(is_symbol)
+        })
+}
+
+/// Puts the numbers of blocks in place of their symbols.
+fn resolve_blocks(table: &SymbolTable, facts: &mut UnitFacts) {
+    let replace = |name: &mut BlockName| {
+        if let Some(number) = table.block(name) {
+            *name = number;
+        }
+    };
+    if let Entity::Block { kind, name } = &mut facts.entity
+        && let Some(number) = table.block(name).filter(|it| matches!(it, BlockName::Number(it, _) if it == kind))
+    {
+        *name = number;
+    }
+    facts.instance_of.iter_mut().for_each(replace);
+    // Code cannot tell whether the symbol is that of a type or of a function block.
+    if matches!(facts.instance_of, Some(BlockName::Number(BlockKind::Udt, _))) {
+        facts.instance_of = None;
+    }
+    if let Some(declared) = &mut facts.declared {
+        declared.each_named_mut(&mut |it| replace(it));
+    }
+    for call in &mut facts.calls {
+        if let Callee::Block(name) = &mut call.callee {
+            replace(name);
+        }
+        call.instance.iter_mut().for_each(replace);
+    }
+}
+
 /// Where one unit uses an object by its address and by its symbol, the unit's own facts took them for two. What is not
 /// known of the two together is taken so that no rule speaks without need: conditional writes count as one write, and a
 /// read behind an unconditional write as one of the unit's own value.
-fn join_aliases(facts: &mut UnitFacts) {
+pub(super) fn join_aliases(facts: &mut UnitFacts) {
     let mut first: FxHashMap<_, u32> = FxHashMap::default();
     let mut aliased: FxHashSet<u32> = FxHashSet::default();
     let same: Vec<u32> = (0..)

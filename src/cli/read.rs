@@ -145,6 +145,7 @@ fn input(path: String, bytes: &[u8], explicit: bool, settings: &Settings, dialec
         | Detected::Step5
         | Detected::Step5Symbols
         | Detected::Step7
+        | Detected::Step7Symbols
         | Detected::Stx => {
             return Ok(Input { path, source, detected });
         }

@@ -42,9 +42,8 @@ pub(super) fn graph(name: &str, units: &[Unit<'_>], index: &ProgramIndex<'_>) ->
         let (target, label) = match &call.it.callee {
             Callee::Function(_) | Callee::Unknown => continue,
             Callee::LocalInstance(name) => {
-                let declared = index.units.get(call.unit as usize).map_or(&[][..], |it| &it.declared);
-                let ty = declared.iter().find(|it| it.name.eq_ignore_ascii_case(name)).map(|it| it.ty.clone());
-                (ty.map(|it| it.to_uppercase().into()), format!("#{name}"))
+                let of = index.units.get(call.unit as usize).and_then(|it| it.type_of_instance(name));
+                (of.map(|it| it.to_string().into()), format!("#{}", name.trim_start_matches('#')))
             }
             Callee::Instance(name) if call.target.is_some() => (None, name.to_string()),
             Callee::Subroutine(number) => (Some(SmolStr::from(format!("SR{number}"))), String::new()),

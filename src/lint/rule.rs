@@ -105,7 +105,7 @@ impl Rule {
             "st" => language == Language::Pl7St || is_pl7_chart,
             "g7" => is_pl7_chart,
             "pl72" => language.is_pl7_2(),
-            "s7" => matches!(language, Language::Awl(_)),
+            "s7" => matches!(language, Language::Awl(_) | Language::SymbolTable),
             "s5" => matches!(language, Language::Step5(_)),
             _ => false,
         })

@@ -7,6 +7,7 @@ pub mod dfb;
 pub mod entity;
 pub mod expr;
 pub mod ladder;
+pub mod layout;
 pub mod literal;
 pub mod lower;
 pub mod object;

@@ -14,6 +14,7 @@ use super::dfb::Interface;
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
+use super::layout::{DataType, Elementary};
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use super::pl7_kinds::Kind;
@@ -301,13 +302,25 @@ pub enum Callee {
     Unknown,
 }
 
-/// A parameter of a call with what was given for it.
+/// A parameter of a call of STEP 7 with what was given for it. It holds no position, so that it may leave the unit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Argument {
-    /// Name of the parameter, where the call gives one.
+    /// Name of the parameter as written, where the call gives one.
     pub name: Option<SmolStr>,
-    pub object: Option<ObjectId>,
-    pub range: TextRange,
+    pub given: Passed,
+    /// Place of the name.
+    pub anchor: u32,
+    /// What is given, as written.
+    pub text: SmolStr,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passed {
+    Object(ObjectId),
+    /// A constant, of the type that its spelling tells.
+    Constant(Option<Elementary>),
+    /// An area by a pointer, or an operand with a mistake.
+    Other,
 }
 
 /// What a call gives to a parameter of a DFB. It holds no position, so that it may leave the unit.
@@ -461,6 +474,8 @@ pub enum OddityKind {
     MissingOperand(u32),
     /// A data block access while none was opened.
     DataBlockNotOpen,
+    /// An operation or transfer of another width or kind of number than its operand: the sentence says why.
+    OperandWidth(String),
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -529,17 +544,7 @@ pub enum HollowKind {
     Network,
 }
 
-/// A name that a block declares.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Declaration {
-    /// In lower case.
-    pub name: SmolStr,
-    pub section: Section,
-    /// The type as written, blanks removed: `INT`, `ARRAY[0..7]OFBOOL`, `"Motor"`.
-    pub ty: SmolStr,
-    pub range: TextRange,
-}
-
+/// Part of an interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Section {
     Input,
@@ -563,7 +568,8 @@ pub struct UnitModel {
     pub jumps: Vec<Jump>,
     pub calls: Vec<Call>,
     pub loops: Vec<Loop>,
-    pub declarations: Vec<Declaration>,
+    /// What a block of STEP 7 declares.
+    pub declared: Option<DataType>,
     /// Symbols that the unit declares for the program.
     pub symbols: Vec<Symbol>,
     /// Comments whose length is limited.
@@ -585,6 +591,8 @@ pub struct UnitModel {
     pub anchors: Vec<TextRange>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
+    /// Whether it opens another data block in place of its instance.
+    pub opens_instance: bool,
     /// Instructions and statements read.
     pub instructions: u32,
     /// Some place computed at run time is read (or written): any object may be.

@@ -16,7 +16,7 @@ use crate::syntax::pl7::ladder_words;
 use crate::syntax::step5::symbols;
 
 use super::scan::{Comments, Lines};
-use super::stx;
+use super::{stx, symlist};
 
 /// What the user says that files are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -119,6 +119,8 @@ pub enum Detected {
     Pl72Exchange,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
+    /// A symbol table of STEP 7; of a project's, the text is a listing.
+    Step7Symbols,
     /// STEP 5 statement list: printed blocks or a bare listing.
     Step5,
     /// Symbols of a STEP 5 program.
@@ -157,12 +159,12 @@ pub mod unsupported {
     pub const SCL: &str = "STEP 7 structured control language (SCL)";
     pub const GRAPH: &str = "S7-GRAPH source";
     pub const STEP5: &str = "STEP 5 program file (S5D)";
-    pub const SYMBOLS: &str = "STEP 7 symbol table";
+    pub const BLOCKS: &str = "compiled STEP 7 blocks (SUBBLK.DBF)";
     pub const IEC: &str = "IEC 61131-3 text that is not PL7";
 
     /// Whether such a file holds code that may use any object and call any block.
     pub fn is_code(what: &str) -> bool {
-        !matches!(what, VARIABLES | SYMBOLS)
+        !matches!(what, VARIABLES)
     }
 }
 
@@ -213,6 +215,7 @@ const EXTENSIONS: &[(&str, Extension)] = &[
     ("sdf", Extension::Table),
     ("asc", Extension::Table),
     ("seq", Extension::Table),
+    ("dif", Extension::Table),
     ("dfb", Extension::Form(unsupported::DFB, Storage::Text)),
     ("scy", Extension::Form(unsupported::VARIABLES, Storage::Text)),
     ("fef", Extension::Form(unsupported::APPLICATION, Storage::Text)),
@@ -232,7 +235,13 @@ const EXTENSIONS: &[(&str, Extension)] = &[
     ("xsy", Extension::Form(unsupported::CONTROL_EXPERT, Storage::Text)),
 ];
 
+/// The containers of a STEP 7 project that hold compiled blocks.
+const BLOCK_CONTAINER: &str = "SUBBLK.DBF";
+
 fn extension(path: Option<&Path>) -> Extension {
+    if path.and_then(Path::file_name).is_some_and(|it| it.eq_ignore_ascii_case(BLOCK_CONTAINER)) {
+        return Extension::Form(unsupported::BLOCKS, Storage::Binary);
+    }
     let Some(extension) = path.and_then(Path::extension).and_then(|extension| extension.to_str()) else {
         return Extension::Other;
     };
@@ -244,7 +253,7 @@ fn extension(path: Option<&Path>) -> Extension {
 
 /// Whether a file found in a folder may be part of a controller program, by its extension.
 pub fn has_plc_extension(path: &Path) -> bool {
-    extension(Some(path)) != Extension::Other
+    extension(Some(path)) != Extension::Other || symlist::is_table(path)
 }
 
 /// Decodes and recognises a file. Data that is not text is not decoded: its text is empty.
@@ -252,6 +261,12 @@ pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (So
     if let Some(project) = project(hint, bytes, encoding) {
         return match project {
             Ok(source) => (source, Detected::Stx),
+            Err(why) => (decode(b"", encoding), Detected::Unreadable { why }),
+        };
+    }
+    if hint.path.is_some_and(symlist::is_table) {
+        return match symlist::listing(bytes, encoding) {
+            Ok(source) => (source, Detected::Step7Symbols),
             Err(why) => (decode(b"", encoding), Detected::Unreadable { why }),
         };
     }
@@ -320,7 +335,17 @@ pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
 /// What a text is, but for whose ladder and charts it has.
 fn detect_form(hint: FileHint<'_>, text: &str, tally: &Tally) -> Detected {
     match hint.dialect {
-        Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, tally),
+        Dialect::Auto => {
+            if extension(hint.path) == Extension::Table && tally.is_symbols() {
+                return if tally.step5_blocks > 0 || hint.path.is_some_and(is_step5_table) {
+                    Detected::Step5Symbols
+                } else {
+                    Detected::Step7Symbols
+                };
+            }
+            detect_auto(extension(hint.path), hint.explicit, text, tally)
+        }
+        Dialect::Step7 if extension(hint.path) == Extension::Table && tally.is_symbols() => Detected::Step7Symbols,
         Dialect::Step7 => Detected::Step7,
         Dialect::Step5 => Detected::Step5,
         Dialect::Pl7
@@ -411,7 +436,6 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Gr7 if tally.has_chart() || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
         Extension::Sfc if tally.has_chart() => Detected::Pasted(Pl7Text::Sfc),
         Extension::Table if tally.symbols_step5 * 2 > tally.lines => Detected::Step5Symbols,
-        Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
         Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
                 Detected::Step7
@@ -506,6 +530,10 @@ struct Tally {
     step5: u32,
     /// Lines of a symbol table, and those of one of STEP 5.
     symbols: u32,
+    /// Those among them that name a block which only STEP 5 has.
+    step5_blocks: u32,
+    /// Lines of a data interchange file: the words of its header, and marks of its rows.
+    interchange: u32,
     symbols_step5: u32,
     /// Natural language.
     prose: u32,
@@ -536,9 +564,10 @@ impl Tally {
 
     fn add(&mut self, line: &str) {
         self.lines += 1;
-        if is_symbol_row(line) {
-            self.symbols += 1;
-        }
+        let of_step5 = is_step5_row(line);
+        self.symbols += u32::from(of_step5 || is_symbol_row(line));
+        self.step5_blocks += u32::from(of_step5);
+        self.interchange += u32::from(matches!(line, "TABLE" | "VECTORS" | "TUPLES" | "BOT"));
         self.symbols_step5 += u32::from(symbols::row(line).is_some());
         if let Some((block, _)) = exchange_block(line) {
             self.blocks += 1;
@@ -625,6 +654,11 @@ impl Tally {
     /// Whether ladder and charts are PL7-2's: most of their operands say so, or where they say nothing, the configuration.
     fn is_pl7_2(&self, configured: Option<Family>) -> bool {
         self.pl7_2 > self.not_pl7_2 || self.not_pl7_2 == 0 && configured == Some(Family::Pl72)
+    }
+
+    /// Whether the text is a symbol table of STEP 7. In the data interchange format a row is many lines.
+    fn is_symbols(&self) -> bool {
+        self.symbols * 2 > self.lines || self.interchange > 2
     }
 
     fn is_exchange(&self) -> bool {
@@ -1048,11 +1082,28 @@ fn is_declaration(line: &str) -> bool {
     }
 }
 
+/// The symbols of a STEP 5 program `PLANTA` lie in `PLANTAZ0.SEQ`.
+fn is_step5_table(path: &Path) -> bool {
+    let name = path.file_stem().and_then(|it| it.to_str()).unwrap_or_default();
+    name.get(name.len().saturating_sub(2)..).is_some_and(|it| it.eq_ignore_ascii_case("Z0"))
+}
+
+/// Whether a row of a symbol table names a block that only STEP 5 has.
+fn is_step5_row(line: &str) -> bool {
+    line.split(['\t', '"', ',']).any(|field| {
+        let (letters, number) = field.trim().split_at_checked(2).unwrap_or_default();
+        let number = number.trim();
+        matches!(letters, "PB" | "SB" | "FX" | "DX")
+            && !number.is_empty()
+            && number.bytes().all(|it| it.is_ascii_digit())
+    })
+}
+
 /// Whether a line is a row of a symbol table: quoted fields, fixed width after `126,`, or an address between tabs.
 fn is_symbol_row(line: &str) -> bool {
     line.starts_with("126,")
         || line.starts_with('"') && line.matches("\",\"").count() >= 2
-        || line.matches('\t').count() >= 2 && line.split('\t').skip(1).any(is_step7_operand)
+        || line.contains('\t') && line.split('\t').take(2).any(is_step7_operand)
 }
 
 /// Whether a line is natural language or markup of a document, rather than code.
@@ -1235,9 +1286,16 @@ mod tests {
         check("a.scl", "x", unsupported(unsupported::SCL));
         check("a.xef", "<FEFExchangeFile/>", unsupported(unsupported::CONTROL_EXPERT));
         check("a.db", "DATA_BLOCK \"a\"\nSTRUCT\nEND_STRUCT;\nBEGIN\nEND_DATA_BLOCK", STEP7);
-        check("a.sdf", "\"a\",\"I 0.0\",\"BOOL\",\"x\"\n", unsupported(unsupported::SYMBOLS));
-        check("a.asc", "126,Pump                    E       0.0 BOOL      x\n", unsupported(unsupported::SYMBOLS));
-        check("a.seq", "\tPump\tE 0.0\tcomment\n", unsupported(unsupported::SYMBOLS));
+        check("a.sdf", "\"a\",\"I 0.0\",\"BOOL\",\"x\"\n", Detected::Step7Symbols);
+        check("a.asc", "126,Pump                    E       0.0 BOOL      x\n", Detected::Step7Symbols);
+        check("a.seq", "\tE 0.0\tPump\tcomment\n", Detected::Step7Symbols);
+        check("plantZ0.seq", "\tE 0.0\tPump\tcomment\n", Detected::Step5Symbols);
+        check("a.seq", "\tPB 10\tPump\tcomment\n\tE 0.0\tLamp\t\n", Detected::Step5Symbols);
+        check(
+            "a.dif",
+            "TABLE\n0,1\n\"\"\nVECTORS\n0,1\n\"\"\nTUPLES\n0,4\n\"\"\nDATA\n0,0\n\"\"\n-1,0\nBOT\n",
+            Detected::Step7Symbols,
+        );
         check("a.sfc", "INITIAL_STEP X0 : END_STEP", Detected::Pasted(Pl7Text::Sfc));
         check("a.sfc", "<svg/>", Detected::NotPlc);
     }

@@ -15,6 +15,7 @@ pub mod line_index;
 mod scan;
 pub mod split;
 pub mod stx;
+pub mod symlist;
 #[cfg(test)]
 mod testing;
 pub mod walk;

@@ -57,6 +57,7 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::Pasted(default) => pasted(&mut units, default, Family::Pl7, hint),
         Detected::Exchange => exchange(&mut units, Family::Pl7),
         Detected::Pl72Exchange => exchange(&mut units, Family::Pl72),
+        Detected::Step7Symbols => units.push(0, Draft::new(Entity::Container, Some(Language::SymbolTable))),
         Detected::Stx => project(&mut units),
         Detected::Pl72 => pasted(&mut units, pl7_2_text(text), Family::Pl72, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {

@@ -16,6 +16,7 @@ pub mod exchange;
 pub mod pl7;
 mod pl72;
 pub mod step5;
+pub mod symbol_table;
 pub mod xref;
 
 pub use kind::SyntaxKind;
@@ -58,6 +59,8 @@ pub enum Language {
     Pl72Sfc,
     /// The blocks around the program in a PL7 exchange file: `[HEADER]`, `[APPLICATION]`, the keys of `[SOURCE_UNIT]`.
     Exchange,
+    /// A symbol table of STEP 7.
+    SymbolTable,
     /// The cross-reference of a PL7 project whose code is not readable.
     Pl7Xref,
 }
@@ -70,7 +73,7 @@ impl Language {
 
     /// Whether the text declares symbols for the programs around it.
     pub fn declares_symbols(self) -> bool {
-        matches!(self, Self::Exchange | Self::Step5Symbols)
+        matches!(self, Self::Exchange | Self::SymbolTable | Self::Step5Symbols)
     }
 
     /// Whether the text is a statement list of Siemens.
@@ -97,6 +100,7 @@ pub fn parse(language: Language, text: &str) -> Parse {
         Language::Pl72Ld => pl7::parse_pl7_2_ld(text),
         Language::Pl72Gr7 | Language::Pl72Sfc => pl7::parse_pl7_2_chart(text),
         Language::Exchange => exchange::parse(text),
+        Language::SymbolTable => symbol_table::parse(text),
         Language::Pl7Xref => xref::parse(text),
     }
 }

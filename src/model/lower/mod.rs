@@ -6,11 +6,14 @@ mod chart;
 mod dfb;
 mod exchange;
 mod il;
+mod interface;
 mod ladder;
 mod pl7;
 mod pl72;
 mod st;
 mod step5_symbols;
+mod symbol_table;
+mod width;
 mod work;
 mod xref;
 
@@ -27,6 +30,7 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => exchange::lower(root, text, entity),
+        Language::SymbolTable => symbol_table::lower(root, entity),
         Language::Step5Symbols => step5_symbols::lower(root, entity),
         Language::Pl7Xref => xref::lower(root, entity),
         Language::Pl7Ld | Language::Pl72Ld => ladder::lower(root, text, entity, language),

@@ -31,6 +31,22 @@ pub fn parse(operand: &str, mnemonics: Mnemonics) -> Result<Object, AddressError
     })
 }
 
+/// Reads an address of a symbol table, in whichever mnemonic set it is: no address means two things in the two.
+///
+/// # Errors
+/// Those of [`parse`] in the German set, which is that of the source manual.
+pub fn parse_either(operand: &str) -> Result<Object, AddressError> {
+    let german = parse(operand, Mnemonics::German);
+    german.or_else(|error| parse(operand, Mnemonics::English).map_err(|_| error))
+}
+
+/// How an operand of the other mnemonic set is written in this one; `None` when it is written the same.
+pub fn translated(operand: &str, mnemonics: Mnemonics) -> Option<String> {
+    let end = operand.bytes().position(|it| !it.is_ascii_alphabetic()).unwrap_or(operand.len());
+    let (letters, rest) = operand.split_at_checked(end)?;
+    Some(format!("{}{rest}", translate(&letters.to_ascii_uppercase(), mnemonics)?))
+}
+
 /// The operand without the blanks that stand outside quotes.
 fn compact(operand: &str) -> String {
     let mut quoted = false;
@@ -286,6 +302,34 @@ fn data_item(name: BlockName, item: &str, compact: &str) -> Result<Place, Addres
     }
     let area = Area::Symbol(compact.to_lowercase_smolstr());
     Ok(Place { class: Class::Data, ty: Type::Unknown, area, start: 0 })
+}
+
+/// Whether an operand names data by an address: `DB1.DBW 2`, `DBX 0.0`, `DIW 4`.
+pub fn is_data_address(text: &str) -> bool {
+    let item = text.rsplit_once("DB").or_else(|| text.rsplit_once("db")).or_else(|| text.split_once("DI"));
+    let item = item.or_else(|| text.split_once("di")).map_or("", |it| it.1);
+    let number = item.strip_prefix(['X', 'B', 'W', 'D', 'x', 'b', 'w', 'd']).unwrap_or_default().trim_start();
+    !number.is_empty() && number.bytes().all(|it| it.is_ascii_digit() || it == b'.')
+}
+
+/// The data block and the field of an object that is named by both, so that the declaration alone tells its place:
+/// `DB1.poids`, `"Data".speed[3]`. The path is in lower case.
+pub fn field(object: &Object) -> Option<(BlockName, SmolStr)> {
+    let Area::Symbol(name) = &object.footprint.area else { return None };
+    if object.class != Class::Data {
+        return None;
+    }
+    if let Some((block, path)) = quoted_block(name) {
+        return Some((BlockName::Symbol(block), path.into()));
+    }
+    let (block, path) = name.split_once('.')?;
+    let number = block.strip_prefix("db")?.parse().ok()?;
+    Some((BlockName::Number(BlockKind::Db, number), path.into()))
+}
+
+/// The area of such a field, until its place is known.
+pub fn field_area(block: &BlockName, path: &str) -> Area {
+    Area::Symbol(format!("{block}.{path}").to_lowercase_smolstr())
 }
 
 /// `"Data".DBW0`, `« Data ».DBW0`: the symbol in lower case and what follows the point.

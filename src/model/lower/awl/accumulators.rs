@@ -3,14 +3,15 @@
 use rowan::TextRange;
 use smol_str::SmolStr;
 
-use super::operands::{Operand, bare_text};
+use super::operands::{Operand, bare_text, constant_type};
 use super::{Machine, index, mnemonic_text};
 use crate::model::entity::BlockKind;
 use crate::model::expr::{Comparison, ExprId};
+use crate::model::lower::width::Data;
 use crate::model::unit::OddityKind;
 use crate::syntax::AstNode as _;
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::Relation;
+use crate::syntax::awl::instruction::{NumberType, Relation};
 
 /// An accumulator: its value and the loads it may stem from.
 #[derive(Debug, Clone)]
@@ -19,19 +20,20 @@ pub(super) struct Accumulator {
     pub(super) loads: Vec<u32>,
     /// Nothing of the block has put a value there.
     pub(super) entry: bool,
+    pub(super) data: Option<Data>,
 }
 
 impl Accumulator {
     pub(super) fn entry() -> Self {
-        Self { value: None, loads: Vec::new(), entry: true }
+        Self { value: None, loads: Vec::new(), entry: true, data: None }
     }
 
     pub(super) fn unknown() -> Self {
-        Self { value: None, loads: Vec::new(), entry: false }
+        Self { value: None, loads: Vec::new(), entry: false, data: None }
     }
 
     pub(super) fn computed(value: ExprId) -> Self {
-        Self { value: Some(value), loads: Vec::new(), entry: false }
+        Self { value: Some(value), loads: Vec::new(), entry: false, data: None }
     }
 
     pub(super) fn meet(&mut self, other: &Self) {
@@ -44,6 +46,7 @@ impl Accumulator {
             }
         }
         self.entry &= other.entry;
+        self.data = self.data.as_ref().zip(other.data.as_ref()).and_then(|(a, b)| a.meet(b));
     }
 }
 
@@ -117,7 +120,7 @@ impl Machine {
         self.loads.push(Load { range, text, used, lost_at: None, follows, returned: false });
         let load = index(self.loads.len() - 1);
         self.last_load = Some(load);
-        let loaded = Accumulator { value: Some(value), loads: vec![load], entry: false };
+        let loaded = Accumulator { loads: vec![load], ..Accumulator::computed(value) };
         let before = std::mem::replace(&mut self.accumulators[0], loaded);
         self.accumulators[1] = before;
     }
@@ -140,6 +143,19 @@ impl Machine {
         let left = self.accumulator(1);
         let right = self.accumulator(0);
         (left, right)
+    }
+
+    /// Reports operands of another width or kind than the operation is for: the first of them.
+    pub(super) fn fit(&mut self, ty: NumberType, range: TextRange, instr: &ast::Instr) {
+        let mut data = self.accumulators.iter().rev().filter_map(|it| it.data.as_ref());
+        let misfit = data.find_map(|it| it.misfit(ty));
+        self.note_width(misfit, range, instr);
+    }
+
+    pub(super) fn note_width(&mut self, flaw: Option<String>, range: TextRange, instr: &ast::Instr) {
+        if let Some(flaw) = flaw.filter(|_| self.b.is_reachable()) {
+            self.b.oddity(OddityKind::OperandWidth(flaw), range, mnemonic_text(instr));
+        }
     }
 
     /// Reports an instruction that needs both accumulators where the block has not filled them.
@@ -169,15 +185,23 @@ impl Machine {
         self.ignores_rlo(range, instr);
         let Some(node) = instr.operand() else { return };
         let at = node.range();
-        let value = match self.operand(&node) {
+        let text = bare_text(&node);
+        let (value, data) = match self.operand(&node) {
             Operand::Object(object) => {
                 let object = self.resolve(object, at);
-                self.read(object, at)
+                let declared = self.elementary(object);
+                let data = Data::loaded(self.b.model.object(object), declared);
+                (self.read(object, at), data)
             }
-            Operand::Constant(value) => value,
-            Operand::Other => self.b.exprs().opaque(),
+            Operand::Constant(value) => {
+                let ty = constant_type(&text).flatten();
+                (value, Data::constant(self.b.exprs(), value, ty, text.clone()))
+            }
+            Operand::Other => (self.b.exprs().opaque(), None),
         };
-        self.load(value, range, bare_text(&node));
+        self.load(value, range, text);
+        // The words of STEP 5 are taken for what they are.
+        self.accumulators[0].data = data.filter(|_| !self.is_step5());
     }
 
     pub(super) fn constant_operand(&mut self, instr: &ast::Instr) -> ExprId {

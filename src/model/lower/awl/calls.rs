@@ -4,14 +4,14 @@ use rowan::TextRange;
 use smol_str::SmolStr;
 
 use super::accumulators::Accumulator;
-use super::operands::{Operand, bare_text, first_kind, is_indexed};
+use super::operands::{Operand, bare_text, constant_type, first_kind, is_indexed};
 use super::rlo::{Rlo, RloState};
 use super::step5::block_text;
 use super::{Machine, mnemonic_text};
 use crate::model::entity::{BlockKind, BlockName};
 use crate::model::expr::{Exprs, ObjectId};
 use crate::model::object::{self, Class};
-use crate::model::unit::{Argument, Call, Callee, Formal, Mode, OddityKind, StatementKind};
+use crate::model::unit::{Argument, Call, Callee, Formal, Mode, OddityKind, Passed, StatementKind};
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::Op;
 use crate::syntax::{AstNode as _, SyntaxKind, SyntaxNode};
@@ -51,7 +51,12 @@ impl Machine {
                 self.open.shared = Some(Some(name.clone()));
                 object
             }
-            _ => object,
+            _ => {
+                if let Some((name, _)) = object::step7::field(data) {
+                    self.open.shared = Some(Some(name));
+                }
+                object
+            }
         }
     }
 
@@ -90,7 +95,7 @@ impl Machine {
             let Some(value) = arg.value() else { continue };
             let range = value.range();
             let name = arg.name().map(|it| SmolStr::new(it.text()));
-            let object = match self.operand(&value) {
+            let given = match self.operand(&value) {
                 Operand::Object(object) => {
                     let object = self.resolve(object, range);
                     let mode = match &name {
@@ -102,18 +107,20 @@ impl Machine {
                         let access = self.b.touch(object, mode, range);
                         self.b.model.accesses[access as usize].parameter = name.clone().map(Formal::Name);
                     }
-                    Some(object)
+                    Passed::Object(object)
                 }
                 Operand::Constant(_) | Operand::Other => {
+                    let text = bare_text(&value);
                     // A pointer to an area: the called block reads or writes there, and how much is not known here.
-                    if points_to_area(&bare_text(&value)) {
+                    if points_to_area(&text) {
                         self.b.model.reads_indirectly = true;
                         self.b.model.writes_indirectly = true;
                     }
-                    None
+                    constant_type(&text).map_or(Passed::Other, Passed::Constant)
                 }
             };
-            arguments.push(Argument { name, object, range });
+            let anchor = self.b.anchor(arg.name().map_or(range, |it| it.text_range()));
+            arguments.push(Argument { name, given, anchor, text: bare_text(&value) });
         }
         let anchor = self.b.anchor(callee_node.range());
         if let Some(node) = &instance_node {
@@ -137,7 +144,10 @@ impl Machine {
             .arguments
             .iter()
             .filter(|it| it.name.as_ref().is_some_and(|it| it.eq_ignore_ascii_case("RET_VAL")))
-            .filter_map(|it| it.object)
+            .filter_map(|it| match it.given {
+                Passed::Object(object) => Some(object),
+                _ => None,
+            })
             .collect();
         self.b.call(call, range);
         if !system {
@@ -163,6 +173,7 @@ impl Machine {
         let text = block_text(&node);
         let upper = text.to_ascii_uppercase();
         if upper.starts_with("DI") && upper[2..].starts_with(|it: char| it.is_ascii_digit() || it == '[') {
+            self.b.model.opens_instance = true;
             return;
         }
         let has_index = is_indexed(&node);

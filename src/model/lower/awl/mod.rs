@@ -18,13 +18,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::builder::{Builder, index};
+use super::width::Data;
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, Operator};
-use crate::model::object::Type;
+use crate::model::layout::{Elementary, Layout};
 use crate::model::unit::{Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, Pulse, StatementKind};
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::{ArithOp, Conversion, JumpIf, LogicOp, Op, Shift};
+use crate::syntax::awl::instruction::{ArithOp, Conversion, JumpIf, LogicOp, NumberType, Op, Shift};
 use crate::syntax::{AstNode as _, Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
@@ -53,6 +54,8 @@ pub fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitMo
         back_targets: FxHashSet::default(),
         operands: FxHashMap::default(),
         declared: FxHashMap::default(),
+        temporary: Layout::default(),
+        instance: Layout::default(),
         closed: false,
         last_load: None,
         jump_list: false,
@@ -90,7 +93,10 @@ struct Machine {
     back_targets: FxHashSet<SmolStr>,
     operands: FxHashMap<SmolStr, Operand>,
     /// Names that the block declares, in lower case.
-    declared: FxHashMap<SmolStr, Type>,
+    declared: FxHashMap<SmolStr, Option<Elementary>>,
+    /// Where its own variables lie: in the local data, and in the instance of a function block.
+    temporary: Layout,
+    instance: Layout,
     /// The block's end was read, so that what is left over is really lost.
     closed: bool,
     /// The instruction before, when it was a load.
@@ -298,6 +304,10 @@ impl Machine {
                 self.ignores_rlo(range, instr);
                 let value = self.accumulator(0);
                 if let Some((object, at)) = self.object_operand(instr) {
+                    let declared = self.elementary(object);
+                    let data = self.accumulators[0].data.as_ref();
+                    let misplaced = data.and_then(|it| it.misplaced(self.b.model.object(object), declared));
+                    self.note_width(misplaced, range, instr);
                     self.b.store(object, value, at, range);
                     self.note_write(object);
                 }
@@ -322,7 +332,8 @@ impl Machine {
                 }
                 self.limit();
             }
-            Op::Compare(relation, _) => {
+            Op::Compare(relation, ty) => {
+                self.fit(ty, range, instr);
                 let (left, right) = self.two_operands(range, instr);
                 let value = self.b.exprs().compare(comparison(relation), left, right);
                 self.discard(range);
@@ -330,8 +341,10 @@ impl Machine {
                 self.fresh = true;
                 self.overwrite(value, range);
             }
-            Op::Arithmetic(op, _) => {
+            Op::Arithmetic(op, ty) => {
                 self.ignores_rlo(range, instr);
+                self.fit(ty, range, instr);
+                let data = Data::computed(op, ty, [&self.accumulators[0].data, &self.accumulators[1].data]);
                 let (left, right) = self.two_operands(range, instr);
                 let operator = match op {
                     ArithOp::Add => Operator::Add,
@@ -341,6 +354,7 @@ impl Machine {
                 };
                 let value = self.b.exprs().binary(operator, left, right);
                 self.result(value);
+                self.accumulators[0].data = Some(data).filter(|_| !self.is_step5());
             }
             Op::Modulo => {
                 self.ignores_rlo(range, instr);
@@ -381,15 +395,22 @@ impl Machine {
                 }
                 self.opaque_result();
             }
-            Op::Convert(Conversion::OnesComplementInt | Conversion::OnesComplementDint) => {
+            Op::Convert(by) => {
                 self.ignores_rlo(range, instr);
-                let value = self.accumulator(0);
-                let all = self.b.exprs().int(-1);
-                let value = self.b.exprs().binary(Operator::Xor, value, all);
-                self.result(value);
+                if matches!(by, Conversion::OnesComplementInt | Conversion::OnesComplementDint) {
+                    let value = self.accumulator(0);
+                    let all = self.b.exprs().int(-1);
+                    let value = self.b.exprs().binary(Operator::Xor, value, all);
+                    self.result(value);
+                } else {
+                    self.opaque_result();
+                }
+                self.accumulators[0].data = Data::converted(by).filter(|_| !self.is_step5());
             }
-            Op::Convert(_) | Op::Real(_) => {
+            Op::Real(_) => {
                 self.ignores_rlo(range, instr);
+                let misfit = self.accumulators[0].data.as_ref().and_then(|it| it.misfit(NumberType::Real));
+                self.note_width(misfit, range, instr);
                 self.opaque_result();
             }
             Op::Increment | Op::Decrement => {
@@ -440,7 +461,10 @@ impl Machine {
                 self.end(when, range);
             }
             Op::OpenDb => self.open_block(instr, range),
-            Op::SwapDb => self.open.shared = Some(None),
+            Op::SwapDb => {
+                self.open.shared = Some(None);
+                self.b.model.opens_instance = true;
+            }
             Op::McrOpen => {
                 self.use_rlo(range, "MCR(");
                 self.limit();

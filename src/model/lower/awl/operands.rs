@@ -4,10 +4,13 @@ use rowan::TextRange;
 use smol_str::SmolStr;
 
 use super::Machine;
+use crate::model::entity::BlockKind;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
-use crate::model::literal::{self, Value};
+use crate::model::layout::{Elementary, Field, Layout, Layouts};
+use crate::model::literal::{self, IntType, Value};
+use crate::model::lower::interface;
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
-use crate::model::unit::{Constant, Declaration, OddityKind, Section};
+use crate::model::unit::{Constant, OddityKind, Section};
 use crate::syntax::awl::ast;
 use crate::syntax::{AstNode as _, Language, Mnemonics, SyntaxKind, SyntaxNode};
 
@@ -22,38 +25,36 @@ pub(super) enum Operand {
 
 impl Machine {
     pub(super) fn declarations(&mut self, block: SyntaxNode<'_>) {
-        for section in block.children().filter_map(ast::VarSection::cast) {
-            let Some(keyword) = section.keyword() else { continue };
-            let kind = match keyword.text().to_ascii_uppercase().as_str() {
-                "VAR_INPUT" => Section::Input,
-                "VAR_OUTPUT" => Section::Output,
-                "VAR_IN_OUT" => Section::InOut,
-                "VAR_TEMP" => Section::Temp,
-                _ => Section::Static,
-            };
-            for decl in section.decls() {
-                let ty: String = match decl.type_ref() {
-                    Some(ty) => ty.text().split_whitespace().collect(),
-                    None if decl.array_type().is_some() => "ARRAY".to_owned(),
-                    None => "STRUCT".to_owned(),
-                };
-                self.initial_value(decl.init());
-                let (kind, ty) = match self.is_step5() {
-                    true => {
-                        let (section, ty) = Self::formal_operand(decl);
-                        (section, ty.to_owned())
-                    }
-                    false => (kind, ty),
-                };
-                for name in decl.names() {
-                    let range = name.range();
-                    let name = SmolStr::new(name.text().to_lowercase());
-                    self.declared.insert(name.clone(), declared_type(&ty));
-                    let ty = SmolStr::new(&ty);
-                    self.b.model.declarations.push(Declaration { name, section: kind, ty, range });
-                }
-            }
+        let sections = block.children().filter_map(ast::VarSection::cast);
+        for decl in sections.flat_map(ast::VarSection::decls) {
+            self.initial_value(decl.init());
         }
+        let declared = match self.is_step5() {
+            true => self.formal_operands(block),
+            false => interface::declared(block, &mut self.b),
+        };
+        let (temporary, own): (Vec<Field>, Vec<Field>) =
+            declared.fields().iter().cloned().partition(|it| it.section == Section::Temp);
+        for it in temporary.iter().chain(&own) {
+            self.declared.insert(it.name.clone(), it.ty.elementary());
+        }
+        self.temporary = Layouts::of_temporary(&temporary);
+        // What other blocks are given lies where their caller keeps it, and what those of STEP 5 are given, too.
+        if self.b.model.entity.block_kind() == Some(BlockKind::Fb) && !self.is_step5() {
+            self.instance = Layouts::of_fields(&own);
+        }
+        self.b.model.declared = Some(declared);
+    }
+
+    /// The type of a variable that the block declares.
+    pub(super) fn elementary(&self, object: ObjectId) -> Option<Elementary> {
+        let object = self.b.model.object(object);
+        if object.class != Class::LocalName {
+            return None;
+        }
+        let name = object.text.trim_start_matches('#').replace('"', "").to_lowercase();
+        let place = self.temporary.place(&name).or_else(|| self.instance.place(&name));
+        place.and_then(|it| it.ty).or_else(|| self.declared.get(name.as_str()).copied().flatten())
     }
 
     /// Reads the constant of `:= S5T#1S`. Repetitions and lists of array elements are left alone.
@@ -94,19 +95,26 @@ impl Machine {
         let range = node.range();
         let first = first_kind(node);
         let has_index = is_indexed(node);
+        // An element of an array by its number has one place.
+        let is_number = |it: ast::Operand<'_>| matches!(first_kind(&it), Some(SyntaxKind::Number | SyntaxKind::Minus));
+        let is_fixed = !has_index || node.indices().all(is_number);
         let operand = match first {
             Some(
                 SyntaxKind::Number | SyntaxKind::TypedConstant | SyntaxKind::CharString | SyntaxKind::PointerConstant,
             )
             | Some(SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Hash) => return self.constant(&text, range),
             Some(SyntaxKind::LocalName) => Operand::Object(self.local(&text, has_index)),
-            Some(SyntaxKind::QuotedSymbol) => {
+            Some(SyntaxKind::QuotedSymbol) if is_fixed && is_field(&text) => match self.address(&text, range) {
+                Ok(object) => Operand::Object(object),
+                Err(object) => return Operand::Object(object),
+            },
+            Some(SyntaxKind::QuotedSymbol) if !has_index => {
                 let mut object = Object::symbol(&text);
                 object.indexed = has_index;
                 Operand::Object(self.b.object(object))
             }
             Some(SyntaxKind::LBrack) => Operand::Object(self.indirect(&text, Type::Unknown)),
-            Some(_) if has_index => {
+            Some(_) if !is_fixed => {
                 for inner in node.indices() {
                     if let Operand::Object(object) = self.operand(&inner) {
                         self.b.read(object, inner.range());
@@ -154,17 +162,23 @@ impl Machine {
 
     pub(super) fn local(&mut self, text: &str, indexed: bool) -> ObjectId {
         let name = text.trim_start_matches('#').replace('"', "").to_lowercase();
-        let root = name.split(['.', '[']).next().unwrap_or_default();
-        let ty = if root == name { self.declared.get(root).copied().unwrap_or(Type::Unknown) } else { Type::Unknown };
-        self.b.object(Object {
-            text: text.into(),
-            class: Class::LocalName,
-            ty,
-            footprint: Footprint::new(object::Area::LocalName(name.as_str().into()), 0, 1),
-            rights: Rights::Unknown,
-            extracted: false,
-            indexed,
-        })
+        let placed = |layout: &Layout, area| Some((area, layout.place(&name)?));
+        let place =
+            placed(&self.temporary, object::Area::Local).or_else(|| placed(&self.instance, object::Area::OpenInstance));
+        let (ty, footprint, indexed) = match place {
+            Some((area, it)) => {
+                let ty = it.ty.map_or(Type::Unknown, Elementary::operand);
+                (ty, Footprint::new(area, it.start, it.bits), false)
+            }
+            None => {
+                let ty = self.declared.get(name.as_str()).copied().flatten();
+                let ty = ty.map_or(Type::Unknown, Elementary::operand);
+                (ty, Footprint::new(object::Area::LocalName(name.as_str().into()), 0, 1), indexed)
+            }
+        };
+        let text = text.into();
+        let (rights, extracted) = (Rights::Unknown, false);
+        self.b.object(Object { text, class: Class::LocalName, ty, footprint, rights, extracted, indexed })
     }
 
     /// `Err`: what stands for a text that is no address.
@@ -245,17 +259,26 @@ pub(super) fn is_bare_symbol(text: &str, mnemonics: Mnemonics) -> bool {
     is_word && !numbered && !lacks_number()
 }
 
-/// Size of a declared elementary type.
-pub(super) fn declared_type(ty: &str) -> Type {
-    match ty.to_ascii_uppercase().as_str() {
-        "BOOL" => Type::Bool,
-        "BYTE" | "CHAR" => Type::Byte,
-        "WORD" | "INT" | "S5TIME" | "DATE" => Type::Word,
-        "DWORD" | "DINT" | "TIME" | "TIME_OF_DAY" | "TOD" => Type::Double,
-        "REAL" => Type::Float,
-        "TIMER" | "COUNTER" => Type::Block,
-        _ => Type::Unknown,
-    }
+/// The type that the spelling of a constant tells, `None` within where it tells none; `None` for what is no constant.
+pub(super) fn constant_type(text: &str) -> Option<Option<Elementary>> {
+    Some(match literal::parse_step7(text).ok()? {
+        Value::Bool(_) => Some(Elementary::Bool),
+        Value::Int { ty: IntType::Plain, .. } => Some(Elementary::Int),
+        Value::Int { ty: IntType::Long, .. } => Some(Elementary::DoubleInt),
+        Value::Int { ty: IntType::Bits(8), .. } => Some(Elementary::Byte),
+        Value::Int { ty: IntType::Bits(16), .. } => Some(Elementary::Word),
+        Value::Int { ty: IntType::Bits(32), .. } => Some(Elementary::Double),
+        Value::Real(_) => Some(Elementary::Real),
+        Value::S5Time { .. } => Some(Elementary::S5Time),
+        Value::Time { .. } => Some(Elementary::Time),
+        Value::Int { .. } | Value::Count(_) | Value::Text(_) => None,
+        Value::Other => return None,
+    })
+}
+
+/// `"Data".speed`: more than a symbol.
+fn is_field(text: &str) -> bool {
+    ["\".", "»."].iter().any(|it| text.contains(it))
 }
 
 /// Size of a place given by a pointer: `MW [...]`, `DBB [...]`, `M [...]`.

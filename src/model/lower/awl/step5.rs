@@ -10,6 +10,7 @@ use smol_str::{SmolStr, StrExt as _};
 use super::operands::{Operand, bare_text};
 use super::{Machine, mnemonic_text};
 use crate::model::expr::{ExprId, Exprs, ObjectId};
+use crate::model::layout::{DataType, Elementary, Field};
 use crate::model::object::{self, AddressError, Area, Class, Footprint, Object, Type};
 use crate::model::unit::{OddityKind, Section, StatementKind};
 use crate::syntax::awl::ast;
@@ -29,8 +30,22 @@ impl Machine {
         matches!(self.language, Language::Step5(_))
     }
 
+    /// What a function block of STEP 5 declares.
+    pub(super) fn formal_operands(&mut self, block: SyntaxNode<'_>) -> DataType {
+        let mut fields = Vec::new();
+        for decl in block.children().filter_map(ast::VarSection::cast).flat_map(ast::VarSection::decls) {
+            let (section, ty) = Self::formal_operand(decl);
+            for name in decl.names() {
+                let anchor = self.b.anchor(name.range());
+                let ty = DataType::Elementary(ty);
+                fields.push(Field { name: name.text().to_lowercase().into(), section, ty, anchor });
+            }
+        }
+        DataType::Struct(fields.into())
+    }
+
     /// Section and type of a formal operand, by the letters for its kind and its size.
-    pub(super) fn formal_operand(decl: ast::VarDecl<'_>) -> (Section, &'static str) {
+    fn formal_operand(decl: ast::VarDecl<'_>) -> (Section, Elementary) {
         let mut letters = decl.type_refs().map(|it| it.text().to_ascii_uppercase());
         let kind = letters.next().unwrap_or_default();
         let size = letters.next().unwrap_or_default();
@@ -40,13 +55,13 @@ impl Machine {
             _ => Section::Input,
         };
         let ty = match (kind.as_str(), size.as_str()) {
-            ("T", _) => "TIMER",
-            ("Z" | "C", _) => "COUNTER",
-            ("B", _) => "BLOCK",
-            (_, "BI") => "BOOL",
-            (_, "BY") => "BYTE",
-            (_, "D" | "DW") => "DWORD",
-            _ => "WORD",
+            ("T", _) => Elementary::Timer,
+            ("Z" | "C", _) => Elementary::Counter,
+            ("B", _) => Elementary::Block,
+            (_, "BI") => Elementary::Bool,
+            (_, "BY") => Elementary::Byte,
+            (_, "D" | "DW") => Elementary::Double,
+            _ => Elementary::Word,
         };
         (section, ty)
     }
@@ -203,6 +218,7 @@ mod tests {
     use super::super::super::testing::statements;
     use crate::model::UnitModel;
     use crate::model::entity::{BlockKind, BlockName, Entity};
+    use crate::model::layout::{DataType, Elementary};
     use crate::model::object::{Area, Footprint};
     use crate::model::unit::{Callee, OddityKind};
     use crate::syntax::{Language, Mnemonics};
@@ -306,8 +322,10 @@ mod tests {
     fn formal_operands() {
         let text = "FB 5\nNAME :TEST\nBEZ :EIN  E/A/D/B/T/Z: E  BI/BY/W/D: BI\nBEZ :AUS A BI\n:U =EIN\n:= =AUS\n:BE\n";
         let model = model(text);
-        let declared: Vec<String> =
-            model.declarations.iter().map(|it| format!("{} {:?} {}", it.name, it.section, it.ty)).collect();
+        let fields = model.declared.as_ref().map_or(&[][..], DataType::fields).iter();
+        let declared: Vec<String> = fields
+            .map(|it| format!("{} {:?} {}", it.name, it.section, it.ty.elementary().map_or("", Elementary::name)))
+            .collect();
         assert_eq!(declared, ["ein Input BOOL", "aus Output BOOL"]);
         assert_eq!(statements(&model), ["#AUS := #EIN", "return when true"]);
     }

@@ -1,0 +1,151 @@
+//! B012: a parameter that the called block does not have, does not get, or gets in another type.
+
+use rustc_hash::FxHashSet;
+
+use crate::analysis::Site;
+use crate::analysis::program::{GlobalCall, ProgramIndex};
+use crate::lint::nearest::nearest;
+use crate::lint::{ProgramCx, Sink};
+use crate::model::entity::BlockKind;
+use crate::model::layout::{Elementary, Field};
+use crate::model::object::{Area, Class, Object, Type};
+use crate::model::symbols::key;
+use crate::model::unit::{Argument, Passed, Section};
+use crate::syntax::Language;
+
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    let program = cx.program;
+    for call in program.calls.iter().filter(|it| it.it.full) {
+        let Some(target) = call.target else { continue };
+        let facts = program.units[target as usize];
+        let kind = facts.entity.block_kind();
+        let Some(declared) = facts.declared.as_deref().filter(|_| !facts.has_gaps) else { continue };
+        if matches!(kind, Some(BlockKind::Fb | BlockKind::Fc)) {
+            let parameters = declared.fields().iter();
+            let parameters: Vec<&Field> =
+                parameters.filter(|it| !matches!(it.section, Section::Static | Section::Temp)).collect();
+            judge(program, call, target, &parameters, sink);
+        }
+    }
+    if program.units.iter().any(|it| it.language == Language::SymbolTable) && !program.partial {
+        unknown_symbols(program, sink);
+    }
+}
+
+fn judge(
+    program: &ProgramIndex<'_>,
+    call: &GlobalCall<'_>,
+    target: u32,
+    parameters: &[&Field],
+    sink: &mut Sink<'_, Site>,
+) {
+    let callee = &call.it.text;
+    let place = |it: &Field| Site { unit: target, anchor: it.anchor };
+    let site = |it: &Argument| Site { unit: call.unit, anchor: it.anchor };
+    let mut given = FxHashSet::default();
+    for argument in &call.it.arguments {
+        let Some(name) = &argument.name else { continue };
+        let Some(formal) = parameters.iter().find(|it| it.name == name.to_lowercase()) else {
+            let finding = sink.report(site(argument), format!("`{callee}` has no parameter `{name}`"));
+            let finding = finding.related(ProgramIndex::heading(target), "the called block");
+            if let Some(meant) = nearest(name, parameters.iter().map(|it| it.name.as_str())) {
+                finding.note(format!("a parameter of a similar name is `{meant}`"));
+            }
+            continue;
+        };
+        if !given.insert(&formal.name) {
+            sink.report(site(argument), format!("the parameter `{name}` of `{callee}` is given twice"));
+        } else if let Some(flaw) = flaw(program, call, formal, argument) {
+            sink.report(site(argument), format!("the parameter `{name}` of `{callee}` {flaw}"))
+                .related(place(formal), "declared here");
+        }
+    }
+    // Of a function block, the instance keeps the value of the last call.
+    if program.entity(target).block_kind() != Some(BlockKind::Fc) {
+        return;
+    }
+    let mut missing = parameters.iter().filter(|it| !given.contains(&it.name));
+    if let Some(first) = missing.next() {
+        let others: Vec<String> = missing.map(|it| format!(", `{}`", it.name)).collect();
+        let message = format!("this call of `{callee}` gives nothing to `{}`{}", first.name, others.concat());
+        sink.report(call.site(), message).related(place(first), "declared here");
+    }
+}
+
+/// What is wrong with what a parameter is given, as the end of a sentence.
+fn flaw(program: &ProgramIndex<'_>, call: &GlobalCall<'_>, formal: &Field, argument: &Argument) -> Option<String> {
+    let takes = formal.ty.elementary().filter(|it| !matches!(it, Elementary::Any | Elementary::Pointer));
+    match argument.given {
+        Passed::Constant(_) if matches!(formal.section, Section::Output | Section::InOut) && takes.is_some() => {
+            Some(format!("takes a place to write to, and `{}` is a constant", argument.text))
+        }
+        Passed::Constant(Some(ty)) => {
+            let takes = takes.filter(|it| !accepts(*it, ty))?;
+            Some(format!("is {}, and `{}` is {}", takes.name(), argument.text, ty.name()))
+        }
+        Passed::Object(id) => {
+            let object = &program.units.get(call.unit as usize)?.objects.get(id.0 as usize)?.object;
+            let takes = takes.filter(|it| !fits(*it, object))?;
+            Some(format!("is {}, and `{}` is {}", takes.name(), argument.text, described(object)))
+        }
+        Passed::Constant(None) | Passed::Other => None,
+    }
+}
+
+/// Whether a constant can be given to a parameter. Numbers and patterns are not told apart.
+fn accepts(takes: Elementary, constant: Elementary) -> bool {
+    use Elementary::{Bool, Byte, Char, Counter, Date, DoubleInt, Int, Real, S5Time, Time, TimeOfDay, Timer, Word};
+    let number = matches!(constant, Int | DoubleInt | Byte | Word | Elementary::Double);
+    match takes {
+        Bool | Real => constant == takes,
+        Timer | Counter | Elementary::Block => false,
+        S5Time => constant == S5Time || number && constant.bits() <= 16,
+        Time | TimeOfDay => constant == Time || number,
+        Byte | Char | Word | Int | Date => number && constant.bits() <= takes.bits().max(16),
+        _ => number || constant == Time,
+    }
+}
+
+fn fits(takes: Elementary, object: &Object) -> bool {
+    match (takes, object.class) {
+        // What is not resolved, and what the caller was given itself, may be anything of that size.
+        (_, Class::Symbol | Class::Indirect) | (Elementary::DateAndTime, _) => true,
+        (Elementary::Timer, class) => class == Class::Timer || is_own_block(object),
+        (Elementary::Counter, class) => class == Class::Counter || is_own_block(object),
+        (Elementary::Block, class) => class == Class::CodeBlock || is_own_block(object),
+        _ if object.ty == Type::Unknown => true,
+        _ => object.ty.bits() == Some(takes.bits()),
+    }
+}
+
+fn is_own_block(object: &Object) -> bool {
+    object.class == Class::LocalName && matches!(object.ty, Type::Block | Type::Unknown)
+}
+
+fn described(object: &Object) -> String {
+    match (object.class, object.ty.bits()) {
+        (Class::Timer, _) => "a timer".to_owned(),
+        (Class::Counter, _) => "a counter".to_owned(),
+        (Class::CodeBlock, _) => "a block".to_owned(),
+        (_, Some(1)) => "a bit".to_owned(),
+        (_, Some(bits)) => format!("a place of {bits} bits"),
+        (_, None) => "of another type".to_owned(),
+    }
+}
+
+/// Symbols in quotes that no row of the program's table has: the first use of each.
+fn unknown_symbols(program: &ProgramIndex<'_>, sink: &mut Sink<'_, Site>) {
+    let declared = program.units.iter().flat_map(|it| &it.symbols).map(|it| key(&it.name));
+    let declared: FxHashSet<_> = declared.collect();
+    for it in &program.objects {
+        let quoted = it.object.text.starts_with('"');
+        let Area::Symbol(name) = &it.object.footprint.area else { continue };
+        // Of one with two addresses, rule N001 tells.
+        if quoted && it.object.class == Class::Symbol && !declared.contains(name) {
+            let mut uses = it.uses.iter();
+            let Some(first) = uses.next() else { continue };
+            sink.report(first.site(), format!("`{}` is not in the symbol table", it.object.text))
+                .related_all(uses.map(|it| (it.site(), "also used here".to_owned())));
+        }
+    }
+}

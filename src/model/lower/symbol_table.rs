@@ -1,0 +1,89 @@
+//! A symbol table of STEP 7: the names that a program gives to its addresses and blocks.
+
+use rowan::TextRange;
+use smol_str::SmolStr;
+
+use super::builder::Builder;
+use crate::model::UnitModel;
+use crate::model::entity::Entity;
+use crate::model::object::step7;
+use crate::model::symbols::Symbol;
+use crate::model::unit::OddityKind;
+use crate::syntax::{Language, SyntaxKind, SyntaxNode};
+
+pub(super) fn lower(root: SyntaxNode<'_>, entity: Entity) -> UnitModel {
+    let mut b = Builder::new(entity, Language::SymbolTable, TextRange::default(), root.text_range().len());
+    for row in root.children().filter(|it| it.kind() == SyntaxKind::VarDecl) {
+        declaration(&mut b, row);
+    }
+    b.finish()
+}
+
+fn declaration(b: &mut Builder, row: SyntaxNode<'_>) {
+    let child = |kind| row.children().find(|it| it.kind() == kind);
+    let joined = |it: SyntaxNode<'_>| SmolStr::from(it.text().split_whitespace().collect::<String>());
+    let Some(name) = child(SyntaxKind::VarName) else { return };
+    let object = child(SyntaxKind::ObjectRef).and_then(|it| {
+        let address = joined(it);
+        match step7::parse_either(&address) {
+            Ok(object) => Some(object),
+            // A table of variables is no part of the program.
+            Err(_) if is_variable_table(&address) => None,
+            Err(error) => {
+                b.oddity(OddityKind::Address(error), it.text_range(), address);
+                None
+            }
+        }
+    });
+    let comment = row.tokens().find(|it| it.kind() == SyntaxKind::FreeText);
+    let symbol = Symbol {
+        name: name.text().trim().into(),
+        object,
+        ty: child(SyntaxKind::TypeRef).map(joined).unwrap_or_default(),
+        initial: None,
+        comment: comment.map(|it| it.text().into()),
+        anchor: b.anchor(name.text_range()),
+    };
+    b.model.symbols.push(symbol);
+}
+
+/// `VAT1`
+fn is_variable_table(address: &str) -> bool {
+    let (letters, number) = address.split_at_checked(3).unwrap_or_default();
+    letters.eq_ignore_ascii_case("VAT") && !number.is_empty() && number.bytes().all(|it| it.is_ascii_digit())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::object::Class;
+    use crate::syntax::symbol_table;
+
+    #[test]
+    fn addresses_of_both_sets_and_blocks() {
+        let text = "\"a\",\"E 1.0\",\"BOOL\",\"x\"\n\"b\",\"Q     4.0\",\"BOOL\",\"\"\n\"c\",\"Z 1\",\"COUNTER\",\"\"\n\
+                    \"Motor\",\"FB    1\",\"FB    1\",\"\"\n\"Valve\",\"UDT 2\",\"UDT 2\",\"\"\n\"View\",\"VAT 1\",\"\",\"\"\n\
+                    \"d\",\"C 2\",\"COUNTER\",\"\"\n\"e\",\"M 1.9\",\"BOOL\",\"\"\n\"f\",\"MX 3\",\"BOOL\",\"\"\n";
+        let parse = symbol_table::parse(text);
+        assert_eq!(parse.errors(), []);
+        let model = lower(parse.syntax(), Entity::Container);
+        let found: Vec<_> =
+            model.symbols.iter().map(|it| (it.name.as_str(), it.object.as_ref().map(|it| it.class))).collect();
+        let expected = [
+            ("a", Some(Class::Input)),
+            ("b", Some(Class::Output)),
+            ("c", Some(Class::Counter)),
+            ("Motor", Some(Class::CodeBlock)),
+            ("Valve", Some(Class::CodeBlock)),
+            ("View", None),
+            ("d", Some(Class::Counter)),
+            ("e", None),
+            ("f", None),
+        ];
+        assert_eq!(found, expected);
+        assert_eq!(model.symbols[3].ty, "FB1");
+        assert_eq!(model.symbols[0].comment.as_deref(), Some("x"));
+        let wrong: Vec<&str> = model.oddities.iter().map(|it| it.text.as_str()).collect();
+        assert_eq!(wrong, ["M1.9", "MX3"]);
+    }
+}
