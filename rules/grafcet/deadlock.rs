@@ -7,10 +7,14 @@ use crate::analysis::reach::{Guarded, MAX_CAUSES, Node, Part, Study};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for study in cx.studies().iter().filter(|it| !it.net.has_gaps) {
-        for part in &study.parts {
-            judge(study, part, sink);
-        }
+    for it in cx.studies() {
+        study(it, sink);
+    }
+}
+
+pub(super) fn study(study: &Study<'_, '_>, sink: &mut Sink<'_, Site>) {
+    if !study.net.has_gaps {
+        study.parts.iter().for_each(|it| judge(study, it, sink));
     }
 }
 

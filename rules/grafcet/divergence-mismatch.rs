@@ -7,11 +7,15 @@ use crate::analysis::reach::{MAX_CAUSES, Node, Part, Study};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for study in cx.studies().iter().filter(|it| !it.net.has_gaps) {
-        for part in &study.parts {
-            parallel_as_alternatives(study, part, sink);
-            alternatives_as_parallel(study, part, sink);
-        }
+    for it in cx.studies() {
+        study(it, sink);
+    }
+}
+
+pub(super) fn study(study: &Study<'_, '_>, sink: &mut Sink<'_, Site>) {
+    for part in study.parts.iter().filter(|_| !study.net.has_gaps) {
+        parallel_as_alternatives(study, part, sink);
+        alternatives_as_parallel(study, part, sink);
     }
 }
 

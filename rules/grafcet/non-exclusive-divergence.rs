@@ -8,17 +8,28 @@ use crate::analysis::reach::{Part, Study};
 use crate::lint::{Applicability, Edit, ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for study in cx.studies() {
-        for part in &study.parts {
-            for &later in &part.component.crossings {
-                divergence(study, part, later, sink);
-            }
+    for it in cx.studies() {
+        study(it, |_, _| true, sink);
+    }
+}
+
+/// `compare`: which pairs of transitions are looked at, the earlier first.
+pub(super) fn study(study: &Study<'_, '_>, compare: impl Fn(usize, usize) -> bool, sink: &mut Sink<'_, Site>) {
+    for part in &study.parts {
+        for &later in &part.component.crossings {
+            divergence(study, part, later, &compare, sink);
         }
     }
 }
 
 /// Compares a transition with those before it that leave the same step.
-fn divergence(study: &Study<'_, '_>, part: &Part, later: usize, sink: &mut Sink<'_, Site>) {
+fn divergence(
+    study: &Study<'_, '_>,
+    part: &Part,
+    later: usize,
+    compare: &impl Fn(usize, usize) -> bool,
+    sink: &mut Sink<'_, Site>,
+) {
     /// Of more branches than this, those before the first ones are not compared.
     const MOST: usize = 32;
     let net = &study.net;
@@ -29,6 +40,7 @@ fn divergence(study: &Study<'_, '_>, part: &Part, later: usize, sink: &mut Sink<
     beside.dedup();
     let found: Vec<(usize, Witness)> = beside
         .into_iter()
+        .filter(|it| compare(*it, later))
         .filter_map(|it| match net.can_be(&part.component, &part.all, &[(it, true), (later, true)]) {
             Answer::Possible(witness) => Some((it, witness)),
             Answer::Never | Answer::NotDecided => None,

@@ -7,12 +7,19 @@ use crate::analysis::reach::{Node, Part, Study};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for study in cx.studies().iter().filter(|it| !it.net.has_gaps && it.net.knows_presets()) {
-        for part in &study.parts {
-            // Without a start, all of it is another rule's affair.
-            if !part.all.is_partial && !part.all.situations.is_empty() {
-                judge(study, part, sink);
-            }
+    for it in cx.studies() {
+        study(it, sink);
+    }
+}
+
+pub(super) fn study(study: &Study<'_, '_>, sink: &mut Sink<'_, Site>) {
+    if study.net.has_gaps || !study.net.knows_presets() {
+        return;
+    }
+    for part in &study.parts {
+        // Without a start, all of it is another rule's affair.
+        if !part.all.is_partial && !part.all.situations.is_empty() {
+            judge(study, part, sink);
         }
     }
 }

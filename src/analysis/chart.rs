@@ -343,6 +343,15 @@ impl Transition<'_> {
     }
 }
 
+/// A transition of a chart that was recovered; its ends are indices of steps.
+#[derive(Debug, Clone)]
+pub struct RecoveredTransition<'a> {
+    pub unit: u32,
+    pub it: &'a FactTransition,
+    pub sources: Vec<u32>,
+    pub targets: Vec<u32>,
+}
+
 /// A connector of a joined chart.
 #[derive(Debug, Clone)]
 pub struct Connector<'a> {
@@ -392,6 +401,30 @@ pub struct Chart<'a> {
 }
 
 impl<'a> Chart<'a> {
+    /// A chart that was not drawn, but recovered from code; steps are known by their numbers.
+    pub fn recovered(steps: Vec<Step<'a>>, transitions: Vec<RecoveredTransition<'a>>, has_gaps: bool) -> Self {
+        let by_name = (0..).zip(&steps).filter_map(|(at, it)| Some((it.it.name.as_ref()?, at))).collect();
+        let transition = |RecoveredTransition { unit, it, sources, targets }| Transition {
+            unit,
+            it,
+            sources,
+            targets,
+            is_whole: true,
+            connectors: 0,
+        };
+        Self {
+            task: Task::Mast,
+            section: None,
+            graph: Graph::Main,
+            steps,
+            transitions: transitions.into_iter().map(transition).collect(),
+            connectors: Vec::new(),
+            has_gaps,
+            by_name,
+            loose: FxHashSet::default(),
+        }
+    }
+
     /// The connectors that stand in the place of steps before, or behind, a transition, as indices into
     /// [`Self::connectors`].
     pub fn connectors_at(&self, transition: &Transition<'_>, ends: &[Node]) -> Vec<usize> {

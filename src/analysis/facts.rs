@@ -11,6 +11,7 @@ use super::chart::ChartFacts;
 use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
 use super::gaps;
+use super::sequences::code::CodeFacts;
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
@@ -156,6 +157,8 @@ pub struct UnitFacts {
     pub commented: bool,
     /// Of a unit of PL7-2.
     pub cost: Option<Box<UnitCost>>,
+    /// Of Siemens blocks: what sequences are recovered from.
+    pub code: Option<Box<CodeFacts>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -295,6 +298,7 @@ impl UnitFacts {
             condition: None,
             commented: false,
             cost: UnitCost::new(model),
+            code: CodeFacts::new(model),
         }
     }
 

@@ -27,6 +27,7 @@ pub mod priority;
 pub mod processing;
 pub mod program;
 pub mod reach;
+pub mod sequences;
 pub mod size;
 pub mod symbols;
 

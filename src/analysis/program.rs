@@ -10,6 +10,7 @@ use super::Site;
 use super::chart::{self, Actions, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use super::fields;
+use super::sequences::Sequences;
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
@@ -269,6 +270,8 @@ pub struct ProgramIndex<'a> {
     charts: OnceCell<Vec<Chart<'a>>>,
     actions: OnceCell<Actions<'a>>,
     layouts: OnceCell<Layouts>,
+    sequences: OnceCell<Sequences<'a>>,
+    sequence_charts: OnceCell<Vec<Chart<'a>>>,
 }
 
 impl<'a> ProgramIndex<'a> {
@@ -323,12 +326,24 @@ impl<'a> ProgramIndex<'a> {
             charts: OnceCell::new(),
             actions: OnceCell::new(),
             layouts: OnceCell::new(),
+            sequences: OnceCell::new(),
+            sequence_charts: OnceCell::new(),
         }
     }
 
     /// The charts of the program, whose pages are joined.
     pub fn charts(&self) -> &[Chart<'a>] {
         self.charts.get_or_init(|| chart::join(&self.units))
+    }
+
+    /// The sequences that the program codes with bits.
+    pub fn sequences(&self) -> &Sequences<'a> {
+        self.sequences.get_or_init(|| Sequences::new(self))
+    }
+
+    /// The same as charts, in their order.
+    pub fn sequence_charts(&'a self) -> &'a [Chart<'a>] {
+        self.sequence_charts.get_or_init(|| self.sequences().charts())
     }
 
     /// The actions of their steps.

@@ -125,17 +125,18 @@ pub struct Study<'p, 'a> {
 impl<'p, 'a> Study<'p, 'a> {
     /// Of each section with charts.
     pub fn all(program: &'p ProgramIndex<'a>) -> Vec<Self> {
-        let study = |mut net: Net<'p, 'a>| {
-            let components = net.components();
-            let part = |component: Component| {
-                let own = net.reach(&component);
-                let all = net.reach_all(&component);
-                Part { component, own, all }
-            };
-            let parts = components.into_iter().map(part).collect();
-            Self { net, parts }
+        Net::all(program).into_iter().map(Self::new).collect()
+    }
+
+    pub fn new(mut net: Net<'p, 'a>) -> Self {
+        let components = net.components();
+        let part = |component: Component| {
+            let own = net.reach(&component);
+            let all = net.reach_all(&component);
+            Part { component, own, all }
         };
-        Net::all(program).into_iter().map(study).collect()
+        let parts = components.into_iter().map(part).collect();
+        Self { net, parts }
     }
 }
 
@@ -193,10 +194,43 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     fn new(program: &'p ProgramIndex<'a>, charts: Vec<&'p Chart<'a>>) -> Self {
+        let mut net = Self::empty(program.family, charts);
+        let mut ids = Ids::default();
+        net.cross(|unit, it| ids.of(unit, program.units[unit as usize], it));
+        net.objects = ids.objects;
+        net.find_steps();
+        net.find_supports();
+        net.find_presets(program);
+        net
+    }
+
+    /// Of a chart that was recovered from code. `objects` are those that its receptivities name, `steps` which of them are
+    /// the bits of its steps, `presets` the steps that the code itself sets, those of one condition together.
+    pub fn recovered(
+        family: Family,
+        chart: &'p Chart<'a>,
+        objects: Vec<&'a Object>,
+        steps: &[ObjectId],
+        presets: Vec<Vec<Node>>,
+    ) -> Self {
+        let mut net = Self::empty(family, vec![chart]);
+        net.cross(|_, it| it);
+        net.objects = objects;
+        for (node, &step) in (0..).zip(steps) {
+            net.step_reads.extend(net.exprs.find_read(step, 0).map(|it| (node, it)));
+        }
+        net.find_supports();
+        net.presets = presets;
+        net
+    }
+
+    fn empty(family: Family, charts: Vec<&'p Chart<'a>>) -> Self {
         let has_gaps = charts.iter().any(|it| it.has_gaps);
-        let mut net = Self {
+        let count = |(at, chart): (usize, &&Chart<'_>)| (0..).take(chart.steps.len()).map(move |step| (at, step));
+        let nodes = charts.iter().enumerate().flat_map(count).collect();
+        Self {
             charts,
-            nodes: Vec::new(),
+            nodes,
             crossings: Vec::new(),
             has_gaps,
             presets: Vec::new(),
@@ -204,19 +238,12 @@ impl<'p, 'a> Net<'p, 'a> {
             is_commanded: false,
             exprs: Exprs::default(),
             objects: Vec::new(),
-            family: program.family,
+            family,
             supports: Vec::new(),
             leaving: Vec::new(),
             entering: Vec::new(),
             step_reads: FxHashMap::default(),
-        };
-        for (at, chart) in net.charts.iter().enumerate() {
-            net.nodes.extend((0..).take(chart.steps.len()).map(|step| (at, step)));
         }
-        net.cross(program);
-        net.find_supports();
-        net.find_presets(program);
-        net
     }
 
     fn graph(&self, graph: Graph) -> Option<usize> {
@@ -274,8 +301,9 @@ impl<'p, 'a> Net<'p, 'a> {
         Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family, known: &[] }
     }
 
-    fn cross(&mut self, program: &ProgramIndex<'a>) {
-        let (mut ids, mut exprs, mut crossings) = (Ids::default(), Exprs::default(), Vec::new());
+    /// `id`: what an object of a unit is called here.
+    fn cross(&mut self, mut id: impl FnMut(u32, ObjectId) -> ObjectId) {
+        let (mut exprs, mut crossings) = (Exprs::default(), Vec::new());
         for (chart, it) in self.charts.iter().enumerate() {
             // The step of an expansion that stands for a macro-step on one side.
             let inner = |step: u32, end: &StepName| {
@@ -292,23 +320,24 @@ impl<'p, 'a> Net<'p, 'a> {
                     nodes
                 };
                 let (from, to) = (side(&crossed.sources, StepName::Out), side(&crossed.targets, StepName::In));
-                let unit = program.units[crossed.unit as usize];
                 let guard = match &crossed.it.receptivity {
                     FactReceptivity::Missing => Guarded::Never,
                     FactReceptivity::Unread => Guarded::Unknown,
-                    FactReceptivity::Guard(guard) => {
-                        Guarded::By(exprs.import(guard, |it| ids.of(crossed.unit, unit, it)))
-                    }
+                    FactReceptivity::Guard(guard) => Guarded::By(exprs.import(guard, |it| id(crossed.unit, it))),
                 };
                 crossings.push(Crossing { chart, transition, from, to, guard, route: Route::default() });
             }
         }
-        (self.exprs, self.objects, self.crossings) = (exprs, ids.objects, crossings);
+        (self.exprs, self.crossings) = (exprs, crossings);
         (self.leaving, self.entering) = (vec![Vec::new(); self.nodes.len()], vec![Vec::new(); self.nodes.len()]);
         for (at, it) in self.crossings.iter().enumerate() {
             it.from.iter().for_each(|node| self.leaving[*node as usize].push(at));
             it.to.iter().for_each(|node| self.entering[*node as usize].push(at));
         }
+    }
+
+    /// Which receptivities ask for steps.
+    fn find_steps(&mut self) {
         for (at, object) in (0..).zip(&self.objects) {
             if let Some(read) = self.exprs.find_read(ObjectId(at), 0)
                 && object.class == Class::Step
@@ -582,6 +611,16 @@ impl<'p, 'a> Net<'p, 'a> {
             }
         }
         if reached.is_partial && answer.is_never() { Answer::NotDecided } else { answer }
+    }
+
+    /// The situations in which a transition is valid, as their active steps.
+    pub fn valid_in<'s>(
+        &'s self,
+        part: &'s Part,
+        crossing: usize,
+    ) -> impl Iterator<Item = impl Iterator<Item = Node> + 's> + 's {
+        let all = part.all.valid_in.get(&crossing).into_iter().flatten();
+        all.map(|it| self.active(&part.component, &part.all.situations[*it as usize]))
     }
 
     /// Whether a transition is valid in some situation.

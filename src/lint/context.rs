@@ -9,6 +9,7 @@ use super::suppress::Leftover;
 use crate::analysis::counts::{self, Numbered};
 use crate::analysis::program::{ObjectUses, ProgramIndex};
 use crate::analysis::reach::Study;
+use crate::analysis::sequences::Sequences;
 use crate::model::UnitModel;
 use crate::model::object::{Class, Type};
 use crate::model::pl7_kinds::Kinds;
@@ -130,13 +131,14 @@ pub struct ProgramCx<'a> {
     neighbours: OnceCell<Neighbours>,
     numbers: OnceCell<Vec<Numbered<'a>>>,
     studies: OnceCell<Vec<Study<'a, 'a>>>,
+    sequence_studies: OnceCell<Vec<Study<'a, 'a>>>,
 }
 
 impl<'a> ProgramCx<'a> {
     pub(crate) fn new(program: &'a ProgramIndex<'a>, settings: &'a Settings, target: &'a Target) -> Self {
         let (overlaps, neighbours) = (OnceCell::new(), OnceCell::new());
-        let (numbers, studies) = (OnceCell::new(), OnceCell::new());
-        Self { program, settings, target, overlaps, neighbours, numbers, studies }
+        let (numbers, studies, sequence_studies) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Self { program, settings, target, overlaps, neighbours, numbers, studies, sequence_studies }
     }
 
     /// The objects that are counted, each with its number.
@@ -147,6 +149,20 @@ impl<'a> ProgramCx<'a> {
     /// The charts of the program with what they reach, made once for all rules.
     pub fn studies(&self) -> &[Study<'a, 'a>] {
         self.studies.get_or_init(|| Study::all(self.program))
+    }
+
+    /// The sequences that the program codes with bits.
+    pub fn sequences(&self) -> &'a Sequences<'a> {
+        self.program.sequences()
+    }
+
+    /// Those sequences with what they reach, in their order.
+    pub fn sequence_studies(&self) -> &[Study<'a, 'a>] {
+        self.sequence_studies.get_or_init(|| {
+            let charts = self.program.sequence_charts();
+            let all = self.sequences().list.iter().zip(charts);
+            all.map(|(it, chart)| it.study(self.program.family, chart)).collect()
+        })
     }
 
     /// Outputs, memory bits and bits by symbol of which the program shows all: it is whole, and nothing but the bit's own uses

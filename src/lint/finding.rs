@@ -174,6 +174,13 @@ impl<P> Sink<'_, P> {
         let at = self.findings.len() - 1;
         Reported(&mut self.findings[at])
     }
+
+    /// Adds a note to whatever is reported meanwhile.
+    pub fn noting(&mut self, note: &str, report: impl FnOnce(&mut Self)) {
+        let before = self.findings.len();
+        report(self);
+        self.findings[before..].iter_mut().for_each(|it| it.notes.push(note.to_owned()));
+    }
 }
 
 /// A finding just reported, for its details.

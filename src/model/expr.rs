@@ -7,7 +7,7 @@ use std::hash::BuildHasher as _;
 
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
-use rustc_hash::{FxBuildHasher, FxHashSet};
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 /// Index of an object in the unit's table.
@@ -150,6 +150,21 @@ impl Expr {
             _ => {}
         }
     }
+
+    /// The same of other operands.
+    fn with_operands(&self, mut of: impl FnMut(ExprId) -> ExprId) -> Self {
+        match self {
+            Self::Not(a) => Self::Not(of(*a)),
+            Self::And(a, b) => Self::And(of(*a), of(*b)),
+            Self::Or(a, b) => Self::Or(of(*a), of(*b)),
+            Self::Xor(a, b) => Self::Xor(of(*a), of(*b)),
+            Self::Compare(op, a, b) => Self::Compare(*op, of(*a), of(*b)),
+            Self::Negate(a) => Self::Negate(of(*a)),
+            Self::Binary(op, a, b) => Self::Binary(*op, of(*a), of(*b)),
+            Self::Call(name, list) => Self::Call(name.clone(), list.iter().map(|it| of(*it)).collect()),
+            other => other.clone(),
+        }
+    }
 }
 
 /// The expressions of one unit.
@@ -181,6 +196,64 @@ impl Guard {
     pub fn is_understood(&self) -> bool {
         !self.nodes.iter().any(|it| matches!(it, Expr::Opaque(_)))
     }
+}
+
+/// Expressions cut out of a unit with their versions: what several places of it compute. Its objects are those of the
+/// unit.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Pool {
+    /// Operands before what they are operands of.
+    nodes: Box<[Packed]>,
+}
+
+/// An expression in the room that most of them need: pools are kept for every unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Packed {
+    Read(ObjectId, u32),
+    Not(ExprId),
+    And(ExprId, ExprId),
+    Or(ExprId, ExprId),
+    Other(Box<Expr>),
+}
+
+impl Packed {
+    fn new(expr: Expr) -> Self {
+        match expr {
+            Expr::Read { object, version } => Self::Read(object, version),
+            Expr::Not(a) => Self::Not(a),
+            Expr::And(a, b) => Self::And(a, b),
+            Expr::Or(a, b) => Self::Or(a, b),
+            other => Self::Other(Box::new(other)),
+        }
+    }
+
+    fn unpack(&self) -> Expr {
+        match *self {
+            Self::Read(object, version) => Expr::Read { object, version },
+            Self::Not(a) => Expr::Not(a),
+            Self::And(a, b) => Expr::And(a, b),
+            Self::Or(a, b) => Expr::Or(a, b),
+            Self::Other(ref other) => (**other).clone(),
+        }
+    }
+}
+
+impl Pool {
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+}
+
+/// What stands in the place of a read.
+pub enum Replaced {
+    /// This, as it is.
+    By(ExprId),
+    /// This, when the reads in it are replaced.
+    As(ExprId),
 }
 
 impl Default for Exprs {
@@ -256,15 +329,7 @@ impl Exprs {
         let node = |id: &ExprId| match self.get(*id) {
             Expr::Read { object, .. } => Expr::Read { object: *object, version: 0 },
             Expr::Edge { object, rising, .. } => Expr::Edge { object: *object, version: 0, rising: *rising },
-            Expr::Not(a) => Expr::Not(place(*a)),
-            Expr::And(a, b) => Expr::And(place(*a), place(*b)),
-            Expr::Or(a, b) => Expr::Or(place(*a), place(*b)),
-            Expr::Xor(a, b) => Expr::Xor(place(*a), place(*b)),
-            Expr::Compare(op, a, b) => Expr::Compare(*op, place(*a), place(*b)),
-            Expr::Negate(a) => Expr::Negate(place(*a)),
-            Expr::Binary(op, a, b) => Expr::Binary(*op, place(*a), place(*b)),
-            Expr::Call(name, list) => Expr::Call(name.clone(), list.iter().map(|it| place(*it)).collect()),
-            other => other.clone(),
+            other => other.with_operands(place),
         };
         Some(Guard { nodes: ids.iter().map(node).collect() })
     }
@@ -325,27 +390,129 @@ impl Exprs {
     pub fn import(&mut self, guard: &Guard, mut object: impl FnMut(ObjectId) -> ObjectId) -> ExprId {
         let mut ids: Vec<ExprId> = Vec::with_capacity(guard.nodes.len());
         for node in &guard.nodes {
-            let at = |it: &ExprId| ids.get(it.0 as usize).copied().unwrap_or(Self::FALSE);
+            let at = |it: ExprId| ids.get(it.0 as usize).copied().unwrap_or(Self::FALSE);
             let id = match node {
                 Expr::Read { object: it, version } => self.read(object(*it), *version),
                 Expr::Edge { object: it, version, rising } => self.edge(object(*it), *version, *rising),
-                Expr::Not(a) => self.not(at(a)),
-                Expr::And(a, b) => self.and(at(a), at(b)),
-                Expr::Or(a, b) => self.or(at(a), at(b)),
-                Expr::Xor(a, b) => self.xor(at(a), at(b)),
-                Expr::Compare(op, a, b) => self.compare(*op, at(a), at(b)),
-                Expr::Negate(a) => self.negate(at(a)),
-                Expr::Binary(op, a, b) => self.binary(*op, at(a), at(b)),
-                Expr::Call(name, list) => {
-                    let list = list.iter().map(at).collect();
-                    self.intern(Expr::Call(name.clone(), list))
-                }
                 Expr::Opaque(_) => self.opaque(),
-                constant => self.intern(constant.clone()),
+                other => self.build(&other.with_operands(at)),
             };
             ids.push(id);
         }
         ids.last().copied().unwrap_or(Self::FALSE)
+    }
+
+    /// An expression by its form, simplified; its operands are those of this list.
+    fn build(&mut self, expr: &Expr) -> ExprId {
+        match *expr {
+            Expr::Not(a) => self.not(a),
+            Expr::And(a, b) => self.and(a, b),
+            Expr::Or(a, b) => self.or(a, b),
+            Expr::Xor(a, b) => self.xor(a, b),
+            Expr::Negate(a) => self.negate(a),
+            _ => self.intern(expr.clone()),
+        }
+    }
+
+    /// Some conditions with all that they are made of, versions too, and where each expression went.
+    pub fn cut_all(&self, conditions: impl IntoIterator<Item = ExprId>) -> (Pool, FxHashMap<ExprId, u32>) {
+        let mut seen: FxHashSet<ExprId> = FxHashSet::default();
+        let mut stack: Vec<ExprId> = conditions.into_iter().filter(|it| seen.insert(*it)).collect();
+        while let Some(id) = stack.pop() {
+            self.get(id).operands(|it| {
+                if seen.insert(it) {
+                    stack.push(it);
+                }
+            });
+        }
+        // Ids grow from operands to what they are operands of.
+        let mut ids: Vec<ExprId> = seen.into_iter().collect();
+        ids.sort_unstable();
+        let places: FxHashMap<ExprId, u32> = ids.iter().copied().zip(0..).collect();
+        let place = |id: ExprId| ExprId(places.get(&id).copied().unwrap_or(0));
+        let nodes = ids.iter().map(|it| Packed::new(self.get(*it).with_operands(place))).collect();
+        (Pool { nodes }, places)
+    }
+
+    /// A condition in which reads, edge tests and values about which nothing is known are replaced. `known` holds what is
+    /// replaced already, and takes what is found. A replacement that has not been made itself is `Err`: it is made first.
+    pub fn rewrite(
+        &mut self,
+        condition: ExprId,
+        known: &mut FxHashMap<ExprId, ExprId>,
+        mut leaf: impl FnMut(&mut Self, ExprId) -> Replaced,
+    ) -> ExprId {
+        let mut stack = vec![condition];
+        while let Some(&id) = stack.last() {
+            if known.contains_key(&id) {
+                stack.pop();
+                continue;
+            }
+            let is_leaf = matches!(self.get(id), Expr::Read { .. } | Expr::Edge { .. } | Expr::Opaque(_));
+            if is_leaf {
+                match leaf(self, id) {
+                    Replaced::By(it) => {
+                        known.insert(id, it);
+                    }
+                    Replaced::As(it) => match known.get(&it) {
+                        Some(&made) => {
+                            known.insert(id, made);
+                        }
+                        None => stack.push(it),
+                    },
+                }
+                continue;
+            }
+            let before = stack.len();
+            let expr = self.get(id).clone();
+            expr.operands(|it| {
+                if !known.contains_key(&it) {
+                    stack.push(it);
+                }
+            });
+            if stack.len() == before {
+                let made = self.build(&expr.with_operands(|it| known.get(&it).copied().unwrap_or(it)));
+                known.insert(id, made);
+            }
+        }
+        known.get(&condition).copied().unwrap_or(condition)
+    }
+
+    /// One of the expressions of a pool, with what stands in the place of its reads, edge tests and unknown values. `known`
+    /// has as many places as the pool.
+    pub fn import_from(
+        &mut self,
+        pool: &Pool,
+        at: u32,
+        known: &mut [Option<ExprId>],
+        mut leaf: impl FnMut(&mut Self, &Expr) -> ExprId,
+    ) -> ExprId {
+        let mut stack = vec![at];
+        while let Some(&at) = stack.last() {
+            let (Some(packed), Some(None)) = (pool.nodes.get(at as usize), known.get(at as usize)) else {
+                stack.pop();
+                continue;
+            };
+            let expr = packed.unpack();
+            let before = stack.len();
+            expr.operands(|it| {
+                if let Some(None) = known.get(it.0 as usize) {
+                    stack.push(it.0);
+                }
+            });
+            if stack.len() > before {
+                continue;
+            }
+            let made = match expr {
+                Expr::Read { .. } | Expr::Edge { .. } | Expr::Opaque(_) => leaf(self, &expr),
+                _ => {
+                    let operand = |it: ExprId| known.get(it.0 as usize).copied().flatten().unwrap_or(Self::FALSE);
+                    self.build(&expr.with_operands(operand))
+                }
+            };
+            known[at as usize] = Some(made);
+        }
+        known.get(at as usize).copied().flatten().unwrap_or(Self::FALSE)
     }
 
     pub fn bool(value: bool) -> ExprId {
@@ -356,6 +523,10 @@ impl Exprs {
     pub fn opaque(&mut self) -> ExprId {
         self.opaque += 1;
         self.intern(Expr::Opaque(self.opaque))
+    }
+
+    pub fn is_opaque(&self, id: ExprId) -> bool {
+        matches!(self.get(id), Expr::Opaque(_))
     }
 
     pub fn int(&mut self, value: i64) -> ExprId {

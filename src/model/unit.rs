@@ -512,6 +512,20 @@ pub struct Unreachable {
     pub cut_by: TextRange,
 }
 
+/// An edge of a result, which a bit keeps from scan to scan: `FP M 1.0`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pulse {
+    /// What the instruction gives: a value about which expressions know nothing.
+    pub value: ExprId,
+    /// The result whose edge it is.
+    pub of: ExprId,
+    pub memory: ObjectId,
+    pub rising: bool,
+    /// Index of the statement after it.
+    pub statement: u32,
+    pub path: ExprId,
+}
+
 /// A part of a program that may hold code, and holds nothing, not even a remark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hollow {
@@ -567,6 +581,8 @@ pub struct UnitModel {
     pub oddities: Vec<Oddity>,
     pub unreachable: Vec<Unreachable>,
     pub hollows: Vec<Hollow>,
+    /// Edges of results, in the order of the code.
+    pub pulses: Vec<Pulse>,
     /// Networks of PL7-2, in the order in which they are scanned.
     pub networks: Vec<Network>,
     /// Anchor of the first operation of PL7 that can overflow.

@@ -92,6 +92,7 @@ impl Builder {
             oddities: Vec::new(),
             unreachable: Vec::new(),
             hollows: Vec::new(),
+            pulses: Vec::new(),
             networks: Vec::new(),
             computes: None,
             anchors,

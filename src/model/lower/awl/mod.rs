@@ -23,9 +23,9 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, Operator};
 use crate::model::layout::{Elementary, Layout};
-use crate::model::unit::{Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, StatementKind};
+use crate::model::unit::{Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, Pulse, StatementKind};
 use crate::syntax::awl::ast;
-use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, NumberType, Op, Shift};
+use crate::syntax::awl::instruction::{ArithOp, Conversion, JumpIf, LogicOp, NumberType, Op, Shift};
 use crate::syntax::{AstNode as _, Language, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target;
 
@@ -284,12 +284,15 @@ impl Machine {
             }
             Op::EdgePositive | Op::EdgeNegative => {
                 let was_fresh = self.fresh;
-                self.use_rlo(range, &mnemonic_text(instr));
-                if let Some((object, at)) = self.object_operand(instr) {
-                    self.b.touch(object, Mode::EdgeMemory, at);
-                    self.note_write(object);
-                }
+                let of = self.use_rlo(range, &mnemonic_text(instr));
                 let value = self.b.exprs().opaque();
+                if let Some((memory, at)) = self.object_operand(instr) {
+                    self.b.touch(memory, Mode::EdgeMemory, at);
+                    self.note_write(memory);
+                    let (statement, path) = (index(self.b.model.statements.len()), self.b.path());
+                    let rising = op == Op::EdgePositive;
+                    self.b.model.pulses.push(Pulse { value, of, memory, rising, statement, path });
+                }
                 self.or_base = None;
                 if was_fresh {
                     self.string = None;
@@ -391,6 +394,13 @@ impl Machine {
                     self.use_loads(1);
                 }
                 self.opaque_result();
+            }
+            Op::Convert(Conversion::OnesComplementInt | Conversion::OnesComplementDint) => {
+                self.ignores_rlo(range, instr);
+                let value = self.accumulator(0);
+                let all = self.b.exprs().int(-1);
+                let value = self.b.exprs().binary(Operator::Xor, value, all);
+                self.result(value);
             }
             Op::Convert(by) => {
                 self.ignores_rlo(range, instr);
