@@ -22,6 +22,7 @@ pub mod gaps;
 pub mod known;
 pub mod modules;
 pub mod operands;
+pub mod parameters;
 pub mod priority;
 pub mod processing;
 pub mod program;

@@ -14,7 +14,7 @@ use crate::analysis::conditions::{Answer, Objects, Space};
 use crate::analysis::program::{Context, ProgramIndex};
 use crate::model::entity::{BlockName, Family};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
-use crate::model::object::{Area, Class, Footprint, Object, Type};
+use crate::model::object::{Area, Class, Footprint, Object, Type, step7};
 use crate::model::unit::Formal;
 
 /// A write of a scan.
@@ -402,11 +402,8 @@ impl<'a> Runner<'_, 'a> {
         let mut sites: FxHashMap<ObjectId, Site> = FxHashMap::default();
         let mut ids: Vec<ObjectId> = Vec::with_capacity(facts.objects.len());
         for fact in &facts.objects {
-            let bound = match &fact.object.footprint.area {
-                Area::LocalName(name) => binding.get(name),
-                _ => None,
-            };
-            ids.push(match bound {
+            let name = step7::local_name(&fact.object).filter(|_| !binding.is_empty());
+            ids.push(match name.and_then(|it| binding.get(it.as_str())) {
                 Some(&(id, site)) => {
                     sites.insert(id, site);
                     id

@@ -327,6 +327,17 @@ pub fn field(object: &Object) -> Option<(BlockName, SmolStr)> {
     Some((BlockName::Number(BlockKind::Db, number), path.into()))
 }
 
+/// The name of a variable of a block, in lower case, wherever it lies: `#speed`, `="ON"`.
+pub fn local_name(object: &Object) -> Option<String> {
+    match &object.footprint.area {
+        Area::LocalName(name) => Some(name.to_string()),
+        _ if object.class == Class::LocalName || object.text.starts_with('#') => {
+            Some(object.text.trim_start_matches('#').replace('"', "").to_lowercase())
+        }
+        _ => None,
+    }
+}
+
 /// The area of such a field, until its place is known.
 pub fn field_area(block: &BlockName, path: &str) -> Area {
     Area::Symbol(format!("{block}.{path}").to_lowercase_smolstr())

@@ -52,7 +52,7 @@ impl Machine {
         if object.class != Class::LocalName {
             return None;
         }
-        let name = object.text.trim_start_matches('#').replace('"', "").to_lowercase();
+        let name = object::step7::local_name(object)?;
         let place = self.temporary.place(&name).or_else(|| self.instance.place(&name));
         place.and_then(|it| it.ty).or_else(|| self.declared.get(name.as_str()).copied().flatten())
     }
