@@ -4,6 +4,7 @@
 //! alone and are made in one go. What crosses units goes through [`facts`], which hold no position and are compared for
 //! equality, so that an edit which changes no fact stops there.
 
+use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -137,6 +138,19 @@ fn parse(db: &dyn Db, unit: Unit<'_>) -> Parse {
         return syntax::opaque(unit.text(db));
     }
     syntax::parse(unit.language(db), unit.text(db))
+}
+
+/// The model of a unit, for those who look at one, as with [`tree`].
+#[salsa::tracked(no_eq, lru = 32)]
+pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitModel> {
+    let (entity, language) = (unit.entity(db).clone(), unit.language(db));
+    Arc::new(lower::lower(tree(db, unit).syntax(), unit.text(db), entity, language))
+}
+
+/// Where the lines of a file start.
+#[salsa::tracked(no_eq, lru = 256)]
+pub fn lines(db: &dyn Db, file: SourceFile) -> LineIndex {
+    LineIndex::new(file.text(db))
 }
 
 /// What outlives the tree and the model of a unit.
@@ -332,13 +346,8 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let settings = project.settings(db);
     let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
     let target = settings.target_or(program.family(db), named);
-    let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
-    let facts = symbols::resolve(symbol_table(db, program), &facts);
-    let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
-    let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
-    if program.files(db).iter().any(|it| project.partly_read(db).contains(&folder(it))) {
-        index.leave_incomplete();
-    }
+    let facts = resolved_facts(db, program);
+    let index = index(db, program, &facts);
     let cx = ProgramCx::new(&index, settings, &target);
     let family = program.family(db);
     run_rules(settings, |rule, findings| match rule.check {
@@ -347,6 +356,23 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
         }
         Check::Program(_) | Check::Unit(_) | Check::File(_) => {}
     })
+}
+
+/// The facts of the units of a program, with addresses in place of symbols.
+pub fn resolved_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Cow<'db, UnitFacts>> {
+    let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
+    symbols::resolve(symbol_table(db, program), &facts)
+}
+
+/// A program as a whole, made of its [`resolved_facts`].
+pub fn index<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Cow<'_, UnitFacts>]) -> ProgramIndex<'a> {
+    let project = db.project();
+    let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
+    let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
+    if program.files(db).iter().any(|it| project.partly_read(db).contains(&folder(it))) {
+        index.leave_incomplete();
+    }
+    index
 }
 
 /// Findings of a program by the file of their primary place.
@@ -474,7 +500,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
 }
 
 /// Where the sites of a program lie.
-struct Places<'db> {
+pub struct Places<'db> {
     db: &'db dyn Db,
     units: &'db [Unit<'db>],
     /// Offsets of the units, as far as their files were asked for.
@@ -482,11 +508,11 @@ struct Places<'db> {
 }
 
 impl<'db> Places<'db> {
-    fn new(db: &'db dyn Db, program: Program<'db>) -> Self {
+    pub fn new(db: &'db dyn Db, program: Program<'db>) -> Self {
         Self { db, units: program_units(db, program), offsets: FxHashMap::default() }
     }
 
-    fn of(&mut self, site: Site) -> Option<FilePlace> {
+    pub fn of(&mut self, site: Site) -> Option<FilePlace> {
         let unit = *self.units.get(site.unit as usize)?;
         let file = unit.file(self.db);
         if !self.offsets.contains_key(&unit) {
@@ -508,7 +534,8 @@ fn qualify(db: &dyn Db, finding: &mut Finding<FilePlace>, layout: &[(Unit<'_>, u
     }
 }
 
-fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'db>> {
+/// The unit that holds a place, of those of [`layout`].
+pub fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'db>> {
     let after = layout.partition_point(|it| it.1 <= u32::from(at));
     Some(layout.get(after.checked_sub(1)?)?.0)
 }
@@ -605,6 +632,33 @@ impl RootDatabase {
         files
     }
 
+    /// Adds a file that is no part of the project yet. It stays until the database goes.
+    pub fn add_file(&mut self, input: Input) -> SourceFile {
+        SourceFile::new(self, input.path, input.source.text, input.detected, None)
+    }
+
+    /// Says which files are the project; they come in the order of their paths.
+    pub fn set_project(&mut self, mut files: Vec<SourceFile>) {
+        files.sort_by(|a, b| a.path(self).cmp(b.path(self)));
+        if *files != *self.project().files(self) {
+            self.project().set_files(self).to(files);
+        }
+    }
+
+    pub fn set_settings(&mut self, settings: Settings) {
+        if settings != *self.project().settings(self) {
+            self.project().set_settings(self).to(settings);
+        }
+    }
+
+    /// Says what a file is.
+    pub fn set_detected(&mut self, file: SourceFile, detected: Detected) {
+        if file.detected(self) != detected {
+            file.set_known_spans(self).to(None);
+            file.set_detected(self).to(detected);
+        }
+    }
+
     /// Gives a file another text; nothing happens when it is the same.
     pub fn set_text(&mut self, file: SourceFile, text: impl Into<Arc<str>>) {
         let text = text.into();
@@ -630,6 +684,11 @@ impl Db for RootDatabase {
             None => unreachable!("`new` sets the project before it returns"),
         }
     }
+}
+
+/// Asks the database something; `None` when it was about to be written to, so that the answer would have been stale.
+pub fn unless_cancelled<T>(ask: impl FnOnce() -> T) -> Option<T> {
+    salsa::Cancelled::catch(AssertUnwindSafe(ask)).ok()
 }
 
 /// Names of the tracked functions that ran since the last call, such as `facts(Id(0))`.
@@ -777,7 +836,8 @@ fn unread_form(db: &dyn Db, file: SourceFile) -> Option<&'static str> {
     code.all(|it| it.unsupported(db).is_some()).then_some(form)
 }
 
-fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
+/// What a file was recognised as, in words.
+pub fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),

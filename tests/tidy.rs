@@ -82,7 +82,7 @@ fn only_reports_and_the_command_line_do_output() {
 #[test]
 fn only_walking_and_the_command_line_touch_files() {
     let words = ["std::fs", "fs::read", "fs::write", "File::open", "std::env", "std::net"];
-    assert_absent("src", &words, &["src/source/walk.rs", "src/cli/", "src/main.rs"]);
+    assert_absent("src", &words, &["src/source/walk.rs", "src/load/", "src/cli/", "src/main.rs"]);
     assert_absent("rules", &words, &[]);
 }
 

@@ -9,11 +9,11 @@ use std::time::Instant;
 use clap::ValueEnum;
 use rustc_hash::FxHashMap;
 
-use super::config::{Loader, Source};
-use super::{Colour, Exit, Failure, dialect, print, read};
+use super::{Colour, Exit, Failure, dialect, print};
 use crate::db;
 use crate::lint::settings::Overrides;
 use crate::lint::{Diagnostic, Location, Outcome, Settings, Severity, SourceView};
+use crate::load::{self, Loader, Source};
 use crate::report::{self, Format, Options, Summary};
 use crate::source::detect::Dialect;
 
@@ -125,9 +125,9 @@ fn lint(groups: Vec<Group>, dialect: Dialect, threads: Option<NonZeroUsize>) -> 
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get)).build();
     let pool = pool.map_err(|it| Failure::Usage(format!("the threads do not start: {it}")))?;
     let check = |group: Group| {
-        let mut files = read::read(&group.paths, &group.settings, dialect);
+        let mut files = load::read(&group.paths, &group.settings, dialect);
         if let Some((name, bytes)) = group.stdin {
-            let it = read::from_bytes(&name, &bytes, &group.settings, dialect);
+            let it = load::from_bytes(&name, &bytes, &group.settings, dialect);
             files.inputs.extend(it.inputs);
             files.unread.extend(it.unread);
         }

@@ -10,12 +10,12 @@ use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 
 mod check;
 mod completions;
-mod config;
-mod read;
 mod rule;
 mod rules;
+mod server;
 mod tree;
 
+use crate::load::WrongConfig;
 use crate::source::detect::Dialect;
 
 /// Finds mistakes in PLC programs as they lie on disk: Schneider PL7 (IL, ST) and Siemens STEP 7 (AWL).
@@ -42,6 +42,8 @@ enum Command {
     Rules(rules::Arguments),
     /// Show the syntax tree of a file
     Tree(tree::Arguments),
+    /// Serve an editor: the language server, on standard input and output
+    Server(server::Arguments),
     /// Print a completion script for a shell
     Completions(completions::Arguments),
 }
@@ -88,6 +90,12 @@ enum Failure {
     Output(io::Error),
 }
 
+impl From<WrongConfig> for Failure {
+    fn from(error: WrongConfig) -> Self {
+        Self::Usage(error.to_string())
+    }
+}
+
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Output(error)
@@ -118,6 +126,7 @@ fn run() -> Exit {
         Command::Rule(arguments) => rule::run(&arguments, colour),
         Command::Rules(arguments) => rules::run(&arguments),
         Command::Tree(arguments) => tree::run(&arguments),
+        Command::Server(arguments) => server::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments, &mut Arguments::command()),
     };
     match result {

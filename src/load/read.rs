@@ -1,4 +1,4 @@
-//! Finding and reading the files of a run.
+//! Finding and reading the files of programs.
 
 use std::path::{Path, PathBuf};
 
@@ -6,14 +6,15 @@ use rayon::prelude::*;
 
 use crate::db::Input;
 use crate::lint::{Settings, Unread, UnreadReason};
-use crate::source::detect::{Detected, Dialect, FileHint, load};
+use crate::source::decode::{Encoding, SourceText};
+use crate::source::detect::{Detected, Dialect, FileHint, detect, load};
 use crate::source::walk::{self, Candidate};
 
 /// Files of a run: those to check, and those that are left out.
 #[derive(Default)]
-pub(super) struct Files {
-    pub(super) inputs: Vec<Input>,
-    pub(super) unread: Vec<Unread>,
+pub struct Files {
+    pub inputs: Vec<Input>,
+    pub unread: Vec<Unread>,
 }
 
 impl Files {
@@ -26,7 +27,7 @@ impl Files {
 }
 
 /// Reads what was named: a file whatever its name, of a folder what the settings let through.
-pub(super) fn read(paths: &[PathBuf], settings: &Settings, dialect: Dialect) -> Files {
+pub fn read(paths: &[PathBuf], settings: &Settings, dialect: Dialect) -> Files {
     let mut files = Files::default();
     let (candidates, errors) = walk::walk(paths, &settings.walk_options());
     for error in errors {
@@ -39,14 +40,28 @@ pub(super) fn read(paths: &[PathBuf], settings: &Settings, dialect: Dialect) -> 
 }
 
 /// A file that came through standard input.
-pub(super) fn from_bytes(name: &str, bytes: &[u8], settings: &Settings, dialect: Dialect) -> Files {
+pub fn from_bytes(name: &str, bytes: &[u8], settings: &Settings, dialect: Dialect) -> Files {
     let mut files = Files::default();
     files.add(input(name.to_owned(), bytes, true, settings, dialect));
     files
 }
 
+/// A file whose text is already decoded: what an editor shows.
+pub fn from_text(
+    name: &str,
+    text: &str,
+    explicit: bool,
+    settings: &Settings,
+    dialect: Dialect,
+) -> Result<Input, Unread> {
+    let hint = hint(name, explicit, settings, dialect);
+    let detected = detect(hint, text);
+    let source = SourceText { text: text.into(), encoding: Encoding::Utf8, bom: false, malformed: false, mixed: false };
+    recognised(Input { path: name.to_owned(), source, detected })
+}
+
 /// A path as findings show it: forward slashes, no leading `./`.
-fn shown(path: &Path) -> String {
+pub fn shown(path: &Path) -> String {
     let text = path.to_string_lossy();
     let text = if cfg!(windows) { text.replace('\\', "/") } else { text.into_owned() };
     match text.strip_prefix("./") {
@@ -55,7 +70,8 @@ fn shown(path: &Path) -> String {
     }
 }
 
-fn read_file(it: &Candidate, settings: &Settings, dialect: Dialect) -> Result<Input, Unread> {
+/// One file of a walk.
+pub fn read_file(it: &Candidate, settings: &Settings, dialect: Dialect) -> Result<Input, Unread> {
     let path = shown(&it.path);
     match walk::read(&it.path) {
         Ok(bytes) => input(path, &bytes, it.explicit, settings, dialect),
@@ -63,23 +79,31 @@ fn read_file(it: &Candidate, settings: &Settings, dialect: Dialect) -> Result<In
     }
 }
 
+fn hint<'p>(path: &'p str, explicit: bool, settings: &Settings, dialect: Dialect) -> FileHint<'p> {
+    FileHint { path: Some(Path::new(path)), explicit, dialect, family: settings.controller_family() }
+}
+
 fn input(path: String, bytes: &[u8], explicit: bool, settings: &Settings, dialect: Dialect) -> Result<Input, Unread> {
-    let hint = FileHint { path: Some(Path::new(&path)), explicit, dialect, family: settings.controller_family() };
-    let (source, detected) = load(hint, bytes, settings.encoding());
-    let reason = match detected {
+    let (source, detected) = load(hint(&path, explicit, settings, dialect), bytes, settings.encoding());
+    recognised(Input { path, source, detected })
+}
+
+/// The file, if it is one of a kind that is checked.
+fn recognised(input: Input) -> Result<Input, Unread> {
+    let reason = match input.detected {
         Detected::Exchange
         | Detected::Pasted(_)
         | Detected::Pl72
         | Detected::Pl72Exchange
         | Detected::Step7
         | Detected::Stx => {
-            return Ok(Input { path, source, detected });
+            return Ok(input);
         }
         Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),
         Detected::Unreadable { why } => UnreadReason::Io(why.to_owned()),
         Detected::NotPlc => UnreadReason::NotPlc,
     };
-    Err(Unread { path, reason })
+    Err(Unread { path: input.path, reason })
 }
 
 #[cfg(test)]
