@@ -88,7 +88,7 @@ impl Loader {
             Some(file) => {
                 let text = match self.open.iter().find(|it| it.0 == *file) {
                     Some((_, text)) => text.clone(),
-                    None => read(file).map_err(|it| wrong(Wrong::File(it)))?,
+                    None => self::text(file).map_err(|it| wrong(Wrong::File(it)))?,
                 };
                 let root = self.current.join(file).parent().map(Path::to_owned).unwrap_or_default();
                 let shown = file.strip_prefix(&self.current).unwrap_or(file);
@@ -123,7 +123,8 @@ impl Loader {
     }
 }
 
-fn read(file: &Path) -> io::Result<String> {
+/// The text of a configuration file.
+pub fn text(file: &Path) -> io::Result<String> {
     String::from_utf8(fs::read(file)?).map_err(|_| io::Error::other("it is not UTF-8"))
 }
 

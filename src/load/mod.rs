@@ -4,5 +4,5 @@
 mod config;
 mod read;
 
-pub use config::{Loader, Source, Wrong, WrongConfig};
+pub use config::{Loader, Source, Wrong, WrongConfig, text};
 pub use read::{Files, from_bytes, from_text, read, read_file, shown};

@@ -4,8 +4,13 @@ use std::sync::Arc;
 
 use lsp_types::{TextDocumentContentChangeEvent as Change, Uri};
 
+use rustc_hash::FxHashMap;
+
 use super::convert::Encoding;
 use crate::source::line_index::LineIndex;
+
+/// Open documents by path.
+pub(super) type Documents = FxHashMap<String, Document>;
 
 /// A document that is open in the client. Its text, not the file's, is what counts.
 #[derive(Debug, Clone)]

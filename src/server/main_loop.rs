@@ -23,10 +23,10 @@ use super::capabilities;
 use super::client::{Abilities, Client};
 use super::convert;
 use super::diagnostics::{self, FileDiagnostics, Known};
-use super::document::Document;
+use super::document::{Document, Documents};
 use super::requests::{self, Fault};
-use super::snapshot::{Open, RootSnapshot, Snapshot};
-use super::state::{Documents, Loaded, Root};
+use super::snapshot::{RootSnapshot, Snapshot};
+use super::state::{Loaded, Root};
 use super::transport;
 use super::workers::Workers;
 use crate::db::{self, RootDatabase, SourceFile};
@@ -108,8 +108,8 @@ struct Server {
     workers: Workers,
     stage: Stage,
     roots: Vec<Root>,
-    documents: Documents,
-    open: Arc<FxHashMap<String, Open>>,
+    /// A snapshot shares them: a change copies the map, not the texts.
+    documents: Arc<Documents>,
     known: Arc<Known>,
     /// Diagnostics told in configurations.
     configs: FxHashMap<PathBuf, Vec<Diagnostic>>,
@@ -139,8 +139,7 @@ impl Server {
             workers: Workers::new(),
             stage: Stage::New,
             roots: Vec::new(),
-            documents: Documents::default(),
-            open: Arc::default(),
+            documents: Arc::default(),
             known: Arc::default(),
             configs: FxHashMap::default(),
             pending: FxHashMap::default(),
@@ -315,7 +314,7 @@ impl Server {
     fn snapshot(&self) -> Snapshot {
         Snapshot {
             roots: self.roots.iter().map(Root::snapshot).collect(),
-            documents: self.open.clone(),
+            documents: self.documents.clone(),
             abilities: self.abilities.clone(),
             known: self.known.clone(),
             told: Default::default(),
@@ -385,14 +384,15 @@ impl Server {
     fn did_open(&mut self, params: DidOpenTextDocumentParams) {
         let it = params.text_document;
         let path = convert::path_of(&it.uri);
-        self.documents.insert(path.clone(), Document { uri: it.uri, version: it.version, text: it.text.into() });
+        Arc::make_mut(&mut self.documents)
+            .insert(path.clone(), Document { uri: it.uri, version: it.version, text: it.text.into() });
         self.shown(&path);
     }
 
     fn did_change(&mut self, params: DidChangeTextDocumentParams) {
         let it = params.text_document;
         let path = convert::path_of(&it.text_document_identifier.uri);
-        let Some(document) = self.documents.get_mut(&path) else {
+        let Some(document) = Arc::make_mut(&mut self.documents).get_mut(&path) else {
             self.client.log(format!("{path}: a change of a document that is not open"));
             return;
         };
@@ -404,7 +404,6 @@ impl Server {
     /// A document has the text that the client shows now.
     fn shown(&mut self, path: &str) {
         self.revision += 1;
-        self.note_open();
         if is_config(path) {
             return self.reload_configs(path);
         }
@@ -421,11 +420,10 @@ impl Server {
 
     fn did_close(&mut self, params: DidCloseTextDocumentParams) {
         let path = convert::path_of(&params.text_document.uri);
-        if self.documents.remove(&path).is_none() {
+        if Arc::make_mut(&mut self.documents).remove(&path).is_none() {
             return;
         }
         self.revision += 1;
-        self.note_open();
         self.recent.retain(|it| *it != path);
         if is_config(&path) {
             return self.reload_configs(&path);
@@ -642,7 +640,7 @@ impl Server {
 
     fn publish_config(&self, file: &Path, diagnostics: Vec<Diagnostic>) {
         let path = crate::load::shown(file);
-        let open = self.open.get(&path);
+        let open = self.documents.get(&path);
         let Some(uri) = open.map(|it| it.uri.clone()).or_else(|| convert::uri_of(&path)) else { return };
         let version = open.map(|it| it.version).filter(|_| self.abilities.versions);
         self.client.notify::<lsp::PublishDiagnosticsNotification>(PublishDiagnosticsParams {
@@ -650,12 +648,6 @@ impl Server {
             version,
             diagnostics,
         });
-    }
-
-    fn note_open(&mut self) {
-        let open = self.documents.iter();
-        let open = open.map(|(path, it)| (path.clone(), Open { uri: it.uri.clone(), version: it.version }));
-        self.open = Arc::new(open.collect());
     }
 
     // Findings.
@@ -718,7 +710,7 @@ impl Server {
         // was looked at.
         let is_same = match &known {
             Some(known) => known.items == found.items,
-            None => found.items.is_empty() && !self.open.contains_key(&path),
+            None => found.items.is_empty() && !self.documents.contains_key(&path),
         };
         if !is_same {
             self.publish_items(&path, found.items.clone());
@@ -726,7 +718,7 @@ impl Server {
     }
 
     fn publish_items(&self, path: &str, diagnostics: Vec<Diagnostic>) {
-        let open = self.open.get(path);
+        let open = self.documents.get(path);
         let Some(uri) = open.map(|it| it.uri.clone()).or_else(|| convert::uri_of(path)) else { return };
         let version = open.map(|it| it.version).filter(|_| self.abilities.versions);
         self.client.notify::<lsp::PublishDiagnosticsNotification>(PublishDiagnosticsParams {

@@ -9,8 +9,10 @@
 mod capabilities;
 mod client;
 mod convert;
+mod cursor;
 mod diagnostics;
 mod document;
+mod edits;
 mod main_loop;
 mod requests;
 mod snapshot;

@@ -11,24 +11,18 @@ use rustc_hash::FxHashMap;
 use super::client::Abilities;
 use super::convert::{self, Encoding};
 use super::diagnostics::{FileDiagnostics, Known};
+use super::document::Documents;
 use crate::db::{self, FilePlace, RootDatabase, SourceFile};
 
 pub(super) struct Snapshot {
     pub(super) roots: Vec<RootSnapshot>,
     /// Of open documents.
-    pub(super) documents: Arc<FxHashMap<String, Open>>,
+    pub(super) documents: Arc<Documents>,
     pub(super) abilities: Arc<Abilities>,
     /// Findings as the client has them.
     pub(super) known: Arc<Known>,
     /// Findings that the request told.
     pub(super) told: RefCell<Vec<(String, Arc<FileDiagnostics>)>>,
-}
-
-/// Address and version of an open document.
-#[derive(Debug, Clone)]
-pub(super) struct Open {
-    pub(super) uri: Uri,
-    pub(super) version: i32,
 }
 
 /// A folder of the workspace.

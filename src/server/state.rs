@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use super::document::Document;
+use super::document::Documents;
 use super::snapshot::RootSnapshot;
 use crate::db::{Db as _, Input, RootDatabase, SourceFile};
 use crate::lint::settings::Overrides;
@@ -13,9 +13,6 @@ use crate::lint::{Settings, Unread, UnreadReason};
 use crate::load::{self, Files, Loader, Source, WrongConfig};
 use crate::source::detect::{Detected, Dialect};
 use crate::source::walk::Candidate;
-
-/// Open documents by path.
-pub(super) type Documents = FxHashMap<String, Document>;
 
 /// A folder of the workspace, with one configuration and one database; or the files that were opened from outside of any
 /// folder and share a configuration.

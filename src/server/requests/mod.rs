@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::snapshot::Snapshot;
 
+mod code_action;
 mod document_diagnostic;
 mod text_document_content;
 mod workspace_diagnostic;
@@ -49,6 +50,7 @@ fn run<H: Handle>(snapshot: &Snapshot, params: Value) -> Result<Value, Fault> {
 }
 
 static HANDLERS: &[Handler] = &[
+    handler::<code_action::Handler>(),
     handler::<document_diagnostic::Handler>(),
     handler::<text_document_content::Handler>(),
     handler::<workspace_diagnostic::Handler>(),
