@@ -10,6 +10,7 @@ mod capabilities;
 mod client;
 mod convert;
 mod cursor;
+mod describe;
 mod diagnostics;
 mod document;
 mod edits;

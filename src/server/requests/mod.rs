@@ -6,9 +6,24 @@ use serde_json::Value;
 use super::snapshot::Snapshot;
 
 mod code_action;
+mod code_lens;
+mod completion;
+mod definition;
 mod document_diagnostic;
+mod document_highlight;
+mod document_symbol;
+mod folding_range;
+mod hover;
+mod inlay_hint;
+mod prepare_rename;
+mod references;
+mod rename;
+mod semantic_tokens;
 mod text_document_content;
 mod workspace_diagnostic;
+mod workspace_symbol;
+
+pub(super) use semantic_tokens::legend;
 
 /// Why a request has no answer.
 #[derive(Debug)]
@@ -51,9 +66,22 @@ fn run<H: Handle>(snapshot: &Snapshot, params: Value) -> Result<Value, Fault> {
 
 static HANDLERS: &[Handler] = &[
     handler::<code_action::Handler>(),
+    handler::<code_lens::Handler>(),
+    handler::<completion::Handler>(),
+    handler::<definition::Handler>(),
     handler::<document_diagnostic::Handler>(),
+    handler::<document_highlight::Handler>(),
+    handler::<document_symbol::Handler>(),
+    handler::<folding_range::Handler>(),
+    handler::<hover::Handler>(),
+    handler::<inlay_hint::Handler>(),
+    handler::<prepare_rename::Handler>(),
+    handler::<references::Handler>(),
+    handler::<rename::Handler>(),
+    handler::<semantic_tokens::Handler>(),
     handler::<text_document_content::Handler>(),
     handler::<workspace_diagnostic::Handler>(),
+    handler::<workspace_symbol::Handler>(),
 ];
 
 pub(super) fn find(method: &str) -> Option<&'static Handler> {
