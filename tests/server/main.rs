@@ -3,4 +3,5 @@
 mod client;
 mod edits;
 mod findings;
+mod requests;
 mod robust;

@@ -9,6 +9,7 @@ use rustc_hash::FxHashSet;
 
 use super::{Answer, Handle};
 use crate::analysis::program::ProgramIndex;
+use crate::db;
 use crate::model::dfb::Role;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::object::Class;
@@ -218,6 +219,7 @@ impl Found {
 
     /// Objects, symbols and blocks of the program.
     fn of_program(&mut self, cursor: &InUnit<'_>, typed: &Typed<'_>, index: &ProgramIndex<'_>) {
+        let table = cursor.program().map(|it| db::symbol_table(cursor.it.db, it.0));
         if typed.is_local {
             return;
         }
@@ -228,9 +230,12 @@ impl Found {
         }
         for it in &index.objects {
             let is_address =
-                !matches!(it.object.class, Class::Symbol | Class::CodeBlock | Class::Indirect) && !it.object.indexed;
+                !matches!(it.object.class, Class::Symbol | Class::CodeBlock | Class::Indirect) && it.object.is_fixed();
             if is_address {
-                self.add(&it.object.text, CompletionItemKind::Variable, Some(describe::kind(it.object)));
+                // An object goes by the first name that the program uses for it, which may be its symbol.
+                let address = table.and_then(|table| table.address(&it.object.text));
+                let label = address.as_ref().unwrap_or(&it.object.text);
+                self.add(label, CompletionItemKind::Variable, Some(describe::kind(it.object)));
             }
         }
         for it in &index.units {

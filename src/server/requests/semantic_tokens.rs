@@ -75,6 +75,9 @@ impl Handle for Handler {
 fn ty(token: SyntaxKind, open: &[SyntaxKind]) -> Option<Type> {
     use SyntaxKind as K;
     let parent = open.last().copied().unwrap_or(K::Root);
+    if parent == K::Heading {
+        return None;
+    }
     Some(match token {
         K::Comment | K::UnclosedComment => Type::Comment,
         K::Number | K::TypedConstant | K::PointerConstant => Type::Number,
@@ -92,7 +95,7 @@ fn ty(token: SyntaxKind, open: &[SyntaxKind]) -> Option<Type> {
             K::Label | K::LabelDef => Type::Label,
             K::CallExpr | K::BlockName => Type::Function,
             K::StepName => Type::Variable,
-            K::Error | K::Heading => return None,
+            K::Error => return None,
             _ => Type::Keyword,
         },
         K::Operator | K::Assign | K::Eq | K::Ne | K::Lt | K::Le | K::Gt | K::Ge => Type::Operator,
