@@ -7,10 +7,11 @@ mod generator;
 
 use std::cell::LazyCell;
 use std::hint::black_box;
+use std::path::Path;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group};
 use plclint::db::{self, Input, RootDatabase};
-use plclint::lint::settings::Settings;
+use plclint::lint::settings::{FILE_NAME, Folders, Overrides, Settings};
 use plclint::source::detect::{Detected, Dialect};
 use plclint::source::split::{self, SplitHint};
 use plclint::syntax;
@@ -112,6 +113,32 @@ fn check(criterion: &mut Criterion) {
     group.finish();
 }
 
+fn chart_texts() -> [(&'static str, String); 2] {
+    [("241 steps, 40 divergences", generator::chart(40)), ("1000 steps in 40 charts", generator::charts(40, 4))]
+}
+
+/// Charts, with the rules about them alone, on one thread.
+fn charts(criterion: &mut Criterion) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
+    let mut group = criterion.benchmark_group("charts");
+    group.sample_size(20);
+    for (name, text) in chart_texts() {
+        let input = Input::from_text("bench.sfc", &text, Dialect::Sfc);
+        let overrides = || Overrides { select: Some(vec!["grafcet".to_owned()]), ..Overrides::default() };
+        let settings = || Settings::parse("", Path::new(FILE_NAME), Folders::default(), overrides());
+        let found = db::check(vec![input.clone()], settings().expect("no configuration")).diagnostics.len();
+        eprintln!("{name}: {found} findings");
+        group.bench_function(name, |bencher| {
+            bencher.iter_batched(
+                || (vec![input.clone()], settings().expect("no configuration")),
+                |(inputs, settings)| pool.install(|| db::check(inputs, settings).diagnostics.len()),
+                BatchSize::PerIteration,
+            );
+        });
+    }
+    group.finish();
+}
+
 /// One network of a 1 MB file is edited; all findings of the file are asked for again.
 fn edit(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("edit to findings");
@@ -142,7 +169,8 @@ fn edit(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, split, parse, edit, check);
+criterion_group!(benches, split, parse, edit, charts, check);
+
 fn main() {
     // Writes the generated programs instead, to time the command itself on them.
     if let Some(folder) = std::env::var_os("PLCLINT_BENCH_WRITE") {
@@ -155,6 +183,10 @@ fn main() {
                     std::fs::write(folder.join("program.txt"), program).expect("the folder can be written to");
                 }
             }
+        }
+        for (name, text) in chart_texts() {
+            let file = std::path::Path::new(&folder).join(format!("{}.sfc", name.replace([' ', ','], "")));
+            std::fs::write(file, text).expect("the folder can be written to");
         }
         return;
     }

@@ -20,6 +20,7 @@ use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::ProgramIndex;
 use crate::analysis::symbols::{self, SymbolTable};
+use crate::draw::{self, Drawing, Mark};
 use crate::lint::settings::{ProgramScope, Settings};
 use crate::lint::suppress::{Code, Comment, Suppressions};
 use crate::lint::{
@@ -63,6 +64,9 @@ pub struct Project {
     pub partly_read: Vec<String>,
     #[returns(ref)]
     pub settings: Settings,
+    /// The file of the settings, in which findings may stand.
+    #[returns(copy)]
+    pub configuration: SourceFile,
 }
 
 #[salsa::db]
@@ -92,6 +96,10 @@ pub struct Unit<'db> {
     #[tracked]
     #[returns(copy)]
     pub unsupported: Option<&'static str>,
+    /// Whether something says what the unit is; else it may be a listing out of something larger.
+    #[tracked]
+    #[returns(copy)]
+    pub is_named: bool,
 }
 
 /// Units of a file with their offsets in bytes. They tile the text.
@@ -100,7 +108,8 @@ pub fn layout<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[(Unit<'db>, u32)]>
     let text = file.text(db);
     let units = spans(db, file).iter().map(|span| {
         let part: Arc<str> = text.get(std::ops::Range::<usize>::from(span.range)).unwrap_or_default().into();
-        let unit = Unit::new(db, file, span.key.clone(), part, span.language, span.entity.clone(), span.unsupported);
+        let (key, entity) = (span.key.clone(), span.entity.clone());
+        let unit = Unit::new(db, file, key, part, span.language, entity, span.unsupported, span.is_named);
         (unit, u32::from(span.range.start()))
     });
     units.collect()
@@ -134,10 +143,17 @@ pub fn tree<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Parse {
 }
 
 fn parse(db: &dyn Db, unit: Unit<'_>) -> Parse {
-    if unit.unsupported(db).is_some() {
-        return syntax::opaque(unit.text(db));
+    let text = unit.text(db);
+    match unit.unsupported(db) {
+        None => syntax::parse(unit.language(db), text),
+        // A file of nothing else is one that is not read.
+        Some(detect::unsupported::PL7_2_LANGUAGE) if unread_form(db, unit.file(db)).is_none() => {
+            let message =
+                "PL7-2 has ladder and Grafcet: this part says that it is in another language, and is not read";
+            syntax::opaque(text, Some((first_line(text), message)))
+        }
+        Some(_) => syntax::opaque(text, None),
     }
-    syntax::parse(unit.language(db), unit.text(db))
 }
 
 /// The model of a unit, for those who look at one, as with [`tree`].
@@ -173,10 +189,12 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let tree = parse(db, unit);
     let model = lower::lower(tree.syntax(), text, unit.entity(db).clone(), language);
     let mut facts = UnitFacts::new(&model);
-    facts.has_gaps |=
-        unit.unsupported(db).is_some() || !tree.errors().is_empty() || is_fragment(db, unit, tree.syntax());
+    facts.has_gaps |= unit.unsupported(db).is_some()
+        || !tree.errors().is_empty()
+        || ends_open(tree.syntax())
+        || is_fragment(db, unit);
     let settings = db.project().settings(db);
-    let family = family(unit.file(db).detected(db)).unwrap_or(Family::Pl7);
+    let family = unit_family(db, unit).unwrap_or(Family::Pl7);
     if let Some(condition) = settings.condition_of(unit.entity(db)).filter(|_| family == Family::Pl7) {
         facts.run_under(condition);
     }
@@ -199,6 +217,19 @@ pub fn facts<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitFacts> {
     analysis(db, unit).facts.clone()
 }
 
+/// Whether a comment that nobody closes has swallowed the rest of a unit. What looks like one in the vendor's own block need
+/// not be one.
+fn ends_open(root: syntax::SyntaxNode<'_>) -> bool {
+    if syntax::exchange::Block::all(root).last().is_some_and(|it| it.is_called("VENDOR")) {
+        return false;
+    }
+    let mut last = root.children_with_tokens().last();
+    while let Some(node) = last.and_then(|it| it.into_node()) {
+        last = node.children_with_tokens().last();
+    }
+    last.and_then(|it| it.into_token()).is_some_and(|it| it.kind() == SyntaxKind::UnclosedComment)
+}
+
 fn is_commented(root: syntax::SyntaxNode<'_>, model: &UnitModel) -> bool {
     match model.language {
         Language::Exchange => model.remarks.iter().any(|it| it.kind == RemarkKind::Module && it.characters > 0),
@@ -207,13 +238,16 @@ fn is_commented(root: syntax::SyntaxNode<'_>, model: &UnitModel) -> bool {
     }
 }
 
-/// Whether the unit is PL7 text that does not say what it is: a listing shown in a document, part of something unread.
-fn is_fragment(db: &dyn Db, unit: Unit<'_>, root: syntax::SyntaxNode<'_>) -> bool {
-    let file = unit.file(db);
-    matches!(file.detected(db), Detected::Pasted(_) | Detected::Pl72)
-        && *unit.entity(db) != Entity::Container
-        && db.project().settings(db).entity_address(file.path(db)).is_none()
-        && !root.children().any(|it| it.kind() == SyntaxKind::Heading)
+/// Whether the unit is text that does not say what it is: a listing shown in a document, part of something unread.
+fn is_fragment(db: &dyn Db, unit: Unit<'_>) -> bool {
+    *unit.entity(db) != Entity::Container && !unit.is_named(db)
+}
+
+/// The first line of code of a unit, which names it.
+fn first_line(text: &str) -> TextRange {
+    split::first_code(text)
+        .and_then(|it| Some(TextRange::new(it.start.try_into().ok()?, it.end.try_into().ok()?)))
+        .unwrap_or_default()
 }
 
 /// Files that make up one program, in path order. The key is the folder, or the file when it stands alone.
@@ -226,18 +260,51 @@ pub struct Program<'db> {
     #[tracked]
     #[returns(deref)]
     pub files: Vec<SourceFile>,
+    /// Files of variables that several programs use, which are a program of their own: what a rule says of them comes from
+    /// there.
+    #[tracked]
+    #[returns(deref)]
+    pub variables: Vec<SourceFile>,
+    /// Whether its file stands alone only because others of the folder define what it does.
+    #[tracked]
+    #[returns(copy)]
+    pub is_variant: bool,
 }
 
-/// What of a file says which program it belongs to.
+/// Whose controllers a unit is for: code by its language, what stands around code as its file.
+fn unit_family(db: &dyn Db, unit: Unit<'_>) -> Option<Family> {
+    match unit.language(db) {
+        Language::Exchange => family(unit.file(db).detected(db)),
+        Language::Awl(_) => Some(Family::Step7),
+        language if language.is_pl7_2() => Some(Family::Pl72),
+        _ => Some(Family::Pl7),
+    }
+}
+
+/// Families of the units of a file, of its code only where it has any: parts of PL7 and of PL7-2 may share a text.
 #[salsa::tracked(returns(deref))]
-fn named_entities(db: &dyn Db, file: SourceFile) -> Box<[Entity]> {
-    let entities = units(db, file).iter().map(|unit| unit.entity(db));
-    entities.filter(|it| **it != Entity::Container).cloned().collect()
+fn families(db: &dyn Db, file: SourceFile) -> Box<[Family]> {
+    let units = units(db, file);
+    let is_code = |it: &&Unit<'_>| *it.entity(db) != Entity::Container;
+    let has_code = units.iter().any(|it| is_code(&it));
+    let is_wanted = |it: &&Unit<'_>| !has_code || is_code(it);
+    let mut families: Vec<Family> = units.iter().filter(is_wanted).filter_map(|&it| unit_family(db, it)).collect();
+    families.extend(family(file.detected(db)).filter(|_| *declares_variables(db, file)));
+    families.sort_unstable();
+    families.dedup();
+    families.into_boxed_slice()
+}
+
+/// What of a file says which program of a family it belongs to.
+#[salsa::tracked(returns(deref))]
+fn named_entities(db: &dyn Db, file: SourceFile, family: Family) -> Box<[Entity]> {
+    let units = units(db, file).iter().filter(|&&it| unit_family(db, it) == Some(family));
+    units.map(|it| it.entity(db)).filter(|it| **it != Entity::Container).cloned().collect()
 }
 
 /// Whether a file is a whole application (`.FEF`), by its content: it holds the variables as well as the code.
-fn is_application(db: &dyn Db, file: SourceFile) -> bool {
-    !named_entities(db, file).is_empty() && *declares_variables(db, file)
+fn is_application(db: &dyn Db, file: SourceFile, family: Family) -> bool {
+    !named_entities(db, file, family).is_empty() && *declares_variables(db, file)
 }
 
 /// Whether a file declares variables beside or without code: it belongs to the code around it.
@@ -249,24 +316,25 @@ fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
 
 /// The programs of the project.
 ///
-/// Files of one folder and vendor are one program, unless two of them define the same entity (two variants of one
+/// Files of one folder and family are one program, unless two of them define the same entity (two variants of one
 /// machine side by side) or hold code that does not say what it is: those stand alone. Where whole applications lie beside
 /// exports of their parts, each application is a program, and the other files are one, to which files of variables belong.
+/// Among variants, the files of variables serve each.
 #[salsa::tracked(returns(deref))]
 pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     let project = db.project();
     let scope = project.settings(db).scope();
     let mut folders: Vec<(String, Family, Vec<SourceFile>)> = Vec::new();
-    let mut alone: Vec<(Family, SourceFile)> = Vec::new();
+    let mut alone: Vec<(Family, SourceFile, Vec<SourceFile>, bool)> = Vec::new();
     let mut index: FxHashMap<(String, Family), usize> = FxHashMap::default();
-    for &file in project.files(db) {
-        let Some(family) = family(file.detected(db)) else { continue };
-        let entities = named_entities(db, file);
+    let parts = project.files(db).iter().flat_map(|&file| families(db, file).iter().map(move |&family| (family, file)));
+    for (family, file) in parts {
+        let entities = named_entities(db, file, family);
         let is_part = !entities.is_empty() || *declares_variables(db, file);
         // A project is a whole program, whatever exports of it lie beside it.
         let is_project = file.detected(db) == Detected::Stx;
         if scope == ProgramScope::File || is_project || !is_part || entities.contains(&Entity::Listing) {
-            alone.push((family, file));
+            alone.push((family, file, Vec::new(), false));
             continue;
         }
         let folder = folder_of(file.path(db)).to_owned();
@@ -278,30 +346,34 @@ pub fn programs<'db>(db: &'db dyn Db) -> Box<[Program<'db>]> {
     }
     let mut programs = Vec::new();
     for (folder, family, files) in folders {
-        if scope != ProgramScope::Auto || !clash(db, &files) {
-            programs.push(Program::new(db, folder, family, files));
+        if scope != ProgramScope::Auto || !clash(db, &files, family) {
+            programs.push(Program::new(db, folder, family, files, Vec::new(), false));
             continue;
         }
         let (whole, parts): (Vec<SourceFile>, Vec<SourceFile>) =
-            files.into_iter().partition(|&it| is_application(db, it));
-        alone.extend(whole.into_iter().map(|file| (family, file)));
-        if parts.is_empty() || clash(db, &parts) {
-            alone.extend(parts.into_iter().map(|file| (family, file)));
-        } else {
-            programs.push(Program::new(db, folder, family, parts));
+            files.into_iter().partition(|&it| is_application(db, it, family));
+        let is_clash = clash(db, &whole, family);
+        alone.extend(whole.into_iter().map(|file| (family, file, Vec::new(), is_clash)));
+        if !parts.is_empty() && !clash(db, &parts, family) {
+            programs.push(Program::new(db, folder, family, parts, Vec::new(), false));
+            continue;
         }
+        let (code, variables): (Vec<SourceFile>, Vec<SourceFile>) =
+            parts.into_iter().partition(|&it| !named_entities(db, it, family).is_empty());
+        alone.extend(code.into_iter().map(|file| (family, file, variables.clone(), true)));
+        alone.extend(variables.into_iter().map(|file| (family, file, Vec::new(), false)));
     }
-    for (family, file) in alone {
-        programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file]));
+    for (family, file, variables, is_variant) in alone {
+        programs.push(Program::new(db, file.path(db).to_owned(), family, vec![file], variables, is_variant));
     }
     programs.into_boxed_slice()
 }
 
 /// Whether two files define the same entity. One that repeats its own is judged by itself.
-fn clash(db: &dyn Db, files: &[SourceFile]) -> bool {
+fn clash(db: &dyn Db, files: &[SourceFile], family: Family) -> bool {
     let mut seen = FxHashSet::default();
     files.iter().any(|&file| {
-        let own: FxHashSet<&Entity> = named_entities(db, file).iter().collect();
+        let own: FxHashSet<&Entity> = named_entities(db, file, family).iter().collect();
         own.into_iter().filter(|it| !seen.insert(*it)).count() > 0
     })
 }
@@ -320,23 +392,25 @@ pub fn family(detected: Detected) -> Option<Family> {
     }
 }
 
-/// The program that a file belongs to.
-#[salsa::tracked]
-pub fn program_of<'db>(db: &'db dyn Db, file: SourceFile) -> Option<Program<'db>> {
-    programs(db).iter().copied().find(|it| it.files(db).contains(&file))
+/// The programs that a file belongs to: one of each family of its units.
+#[salsa::tracked(returns(deref))]
+pub fn programs_of<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Program<'db>]> {
+    programs(db).iter().copied().filter(|it| it.files(db).contains(&file)).collect()
 }
 
-/// Units of a program: file order, then order in the file.
+/// Units of a program: file order, then order in the file; those of shared variables last.
 #[salsa::tracked(returns(deref))]
 pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'db>]> {
-    program.files(db).iter().flat_map(|&file| units(db, file).iter().copied()).collect()
+    let files = program.files(db).iter().chain(program.variables(db));
+    let units = files.flat_map(|&file| units(db, file).iter().copied());
+    units.filter(|&it| unit_family(db, it) == Some(program.family(db))).collect()
 }
 
 /// What the symbols of a program name. It has no places.
 #[salsa::tracked]
 pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
     let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
-    SymbolTable::new(declaring.map(|&unit| &**facts(db, unit)))
+    SymbolTable::new(program.family(db), declaring.map(|&unit| &**facts(db, unit)))
 }
 
 /// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].
@@ -346,10 +420,10 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let settings = project.settings(db);
     let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
     let target = settings.target_or(program.family(db), named);
-    let facts = resolved_facts(db, program);
+    let family = program.family(db);
+    let facts = program_facts(db, program);
     let index = index(db, program, &facts);
     let cx = ProgramCx::new(&index, settings, &target);
-    let family = program.family(db);
     run_rules(settings, |rule, findings| match rule.check {
         Check::Program(check) if rule.is_for_family(family) => {
             crate::lint::run(rule, findings, |sink| check(&cx, sink));
@@ -358,18 +432,17 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     })
 }
 
-/// The facts of the units of a program, with addresses in place of symbols.
-pub fn resolved_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Cow<'db, UnitFacts>> {
+/// The facts of a program's units, symbols resolved.
+pub fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Cow<'db, UnitFacts>> {
     let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
     symbols::resolve(symbol_table(db, program), &facts)
 }
 
-/// A program as a whole, made of its [`resolved_facts`].
+/// The index of a program, of its [`program_facts`].
 pub fn index<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Cow<'_, UnitFacts>]) -> ProgramIndex<'a> {
-    let project = db.project();
     let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
-    let folder = |file: &SourceFile| folder_of(file.path(db)).to_owned();
-    if program.files(db).iter().any(|it| project.partly_read(db).contains(&folder(it))) {
+    let partly_read = db.project().partly_read(db);
+    if program.files(db).iter().any(|it| partly_read.iter().any(|folder| folder == folder_of(it.path(db)))) {
         index.leave_incomplete();
     }
     index
@@ -381,7 +454,9 @@ fn program_findings_by_file<'db>(db: &'db dyn Db, program: Program<'db>) -> FxHa
     let units = program_units(db, program);
     let mut by_file: FxHashMap<SourceFile, Vec<Finding<Site>>> = FxHashMap::default();
     for finding in &program_findings(db, program).findings {
-        if let Some(unit) = units.get(finding.place.unit as usize) {
+        if finding.place.is_configured() {
+            by_file.entry(db.project().configuration(db)).or_default().push(finding.clone());
+        } else if let Some(unit) = units.get(finding.place.unit as usize) {
             by_file.entry(unit.file(db)).or_default().push(finding.clone());
         }
     }
@@ -400,6 +475,7 @@ pub struct FilePlace {
 pub struct FileFinding {
     pub finding: Finding<FilePlace>,
     pub entity: String,
+    pub family: Option<Family>,
     pub suppressed: Option<String>,
 }
 
@@ -447,14 +523,16 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
             found.extend(shifted);
         }
     }
-    if let Some(program) = *program_of(db, file) {
+    for &program in programs_of(db, file) {
         let mut places = Places::new(db, program);
         for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
             found.extend(finding.clone().map(|site| places.of(site)));
         }
         let table = symbol_table(db, program);
         if !table.is_empty() {
-            found.iter_mut().for_each(|it| it.message = table.annotate(&it.message));
+            let is_of =
+                |it: &Finding<FilePlace>| family_at(db, layout, it.place.range.start()) == Some(program.family(db));
+            found.iter_mut().filter(|it| is_of(it)).for_each(|it| it.message = table.annotate(&it.message));
         }
     }
     if file.detected(db) == Detected::Stx {
@@ -474,7 +552,8 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         .map(|finding| {
             let line = lines.as_ref().map(|it| it.line_col(finding.place.range.start()).line);
             let suppressed = line.and_then(|it| suppressions.suppress(finding.rule, it)).map(str::to_owned);
-            FileFinding { entity: entity_at(db, layout, finding.place.range.start()), finding, suppressed }
+            let at = finding.place.range.start();
+            FileFinding { entity: entity_at(db, layout, at), family: family_at(db, layout, at), finding, suppressed }
         })
         .collect();
     let leftovers =
@@ -488,8 +567,9 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         let Some(mut finding) = finding.map(|range| Some(FilePlace { file, range })) else { continue };
         let Some(severity) = selection.severity(finding.rule, finding.severity) else { continue };
         finding.severity = severity;
-        let entity = entity_at(db, layout, finding.place.range.start());
-        findings.push(FileFinding { finding, entity, suppressed: None });
+        let at = finding.place.range.start();
+        let (entity, family) = (entity_at(db, layout, at), family_at(db, layout, at));
+        findings.push(FileFinding { finding, entity, family, suppressed: None });
     }
     findings.sort_by(|a, b| {
         let key =
@@ -497,6 +577,29 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         key(a).cmp(&key(b)).then_with(|| a.finding.message.cmp(&b.finding.message))
     });
     findings.into_boxed_slice()
+}
+
+/// Findings in the configuration, sorted. What several programs have wrong there is said once.
+pub fn configuration_findings(db: &dyn Db) -> Vec<FileFinding> {
+    let project = db.project();
+    let (settings, file) = (project.settings(db), project.configuration(db));
+    let selection = settings.selection(file.path(db));
+    let mut findings: Vec<FileFinding> = Vec::new();
+    for &program in programs(db) {
+        let mut places = Places::new(db, program);
+        for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
+            let Some(severity) = selection.severity(finding.rule, finding.severity) else { continue };
+            let Some(mut finding) = finding.clone().map(|site| places.of(site)) else { continue };
+            finding.severity = severity;
+            finding.message = symbol_table(db, program).annotate(&finding.message);
+            let (entity, family) = ("configuration".to_owned(), Some(program.family(db)));
+            findings.push(FileFinding { finding, entity, family, suppressed: None });
+        }
+    }
+    let key = |it: &FileFinding| (it.finding.place.range.start(), it.finding.rule.code, it.finding.message.clone());
+    findings.sort_by_cached_key(key);
+    findings.dedup_by_key(|it| key(it));
+    findings
 }
 
 /// Where the sites of a program lie.
@@ -513,6 +616,13 @@ impl<'db> Places<'db> {
     }
 
     pub fn of(&mut self, site: Site) -> Option<FilePlace> {
+        let project = self.db.project();
+        if site.is_configured() {
+            return Some(FilePlace {
+                file: project.configuration(self.db),
+                range: project.settings(self.db).place(site)?,
+            });
+        }
         let unit = *self.units.get(site.unit as usize)?;
         let file = unit.file(self.db);
         if !self.offsets.contains_key(&unit) {
@@ -542,6 +652,10 @@ pub fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'d
 
 fn entity_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> String {
     unit_at(layout, at).map_or_else(String::new, |it| it.entity(db).to_string())
+}
+
+fn family_at(db: &dyn Db, layout: &[(Unit<'_>, u32)], at: TextSize) -> Option<Family> {
+    unit_at(layout, at).and_then(|it| unit_family(db, it))
 }
 
 /// Suppression comments of a file.
@@ -620,7 +734,9 @@ impl RootDatabase {
             })
         });
         let mut db = Self { project: None, storage: salsa::Storage::new(log) };
-        db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings));
+        let source = settings.source();
+        let configuration = SourceFile::new(&db, source.path.clone(), source.text.clone(), Detected::NotPlc, None);
+        db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings, configuration));
         db
     }
 
@@ -646,7 +762,16 @@ impl RootDatabase {
     }
 
     pub fn set_settings(&mut self, settings: Settings) {
-        if settings != *self.project().settings(self) {
+        let old = self.project().settings(self);
+        if settings != *old || settings.source().text != old.source().text {
+            let configuration = self.project().configuration(self);
+            let source = settings.source();
+            if *source.path != *configuration.path(self) {
+                configuration.set_path(self).to(source.path.clone());
+            }
+            if source.text != *configuration.text(self) {
+                configuration.set_text(self).to(source.text.clone());
+            }
             self.project().set_settings(self).to(settings);
         }
     }
@@ -724,13 +849,23 @@ impl Input {
     }
 }
 
-/// Checks files on the current rayon pool. The outcome is the same for any number of threads.
-pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
-    let start = Instant::now();
+/// The files of a run in a database.
+pub struct Opened {
+    pub db: RootDatabase,
+    /// In path order.
+    pub files: Vec<SourceFile>,
+    /// Of each file, the name of its encoding.
+    pub encodings: Vec<&'static str>,
+    /// Files that are left out.
+    pub unread: Vec<Unread>,
+}
+
+/// Reads the units of files on the current rayon pool.
+pub fn open(mut inputs: Vec<Input>, settings: Settings) -> Opened {
     inputs.sort_by(|a, b| a.path.cmp(&b.path));
     inputs.dedup_by(|a, b| a.path == b.path);
-    let mut outcome = Outcome { active: settings.active(), ..Outcome::default() };
     let (linted, left): (Vec<Input>, Vec<Input>) = inputs.into_iter().partition(|it| family(it.detected).is_some());
+    let mut unread = Vec::new();
     let mut partly_read: Vec<String> = Vec::new();
     for it in left {
         if matches!(it.detected, Detected::Unsupported { what, .. } if detect::unsupported::is_code(what)) {
@@ -740,10 +875,9 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),
             _ => UnreadReason::NotPlc,
         };
-        outcome.unread.push(Unread { path: it.path, reason });
+        unread.push(Unread { path: it.path, reason });
     }
-    outcome.untargeted = untargeted(&linted, &settings, &outcome.active);
-    let encodings: Vec<&'static str> = linted.iter().map(|it| it.source.encoding.as_str()).collect();
+    let encodings = linted.iter().map(|it| it.source.encoding.as_str()).collect();
     let mut db = RootDatabase::new(settings, None);
     partly_read.dedup();
     db.project().set_partly_read(&mut db).to(partly_read);
@@ -753,8 +887,21 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             facts(db, unit);
         }
     });
-    let found: Vec<Vec<FileFinding>> =
+    Opened { db, files, encodings, unread }
+}
+
+/// Checks files on the current rayon pool. The outcome is the same for any number of threads.
+pub fn check(inputs: Vec<Input>, settings: Settings) -> Outcome {
+    let start = Instant::now();
+    let active = settings.active();
+    let Opened { db, files, encodings, unread } = open(inputs, settings);
+    let mut outcome = Outcome { active, unread, ..Outcome::default() };
+    let mut found: Vec<Vec<FileFinding>> =
         files.par_iter().map_with(db.clone(), |db, &file| file_findings(db, file).to_vec()).collect();
+    found.push(configuration_findings(&db));
+    let configuration = db.project().configuration(&db);
+    let names = |it: &FileFinding| it.finding.names(|place| place.file == configuration);
+    let mut shown_configuration = found.iter().flatten().any(names).then(|| configuration_view(&db));
     let mut indices: FxHashMap<SourceFile, u32> = FxHashMap::default();
     for (at, &file) in files.iter().enumerate() {
         for &unit in units(&db, file) {
@@ -768,6 +915,10 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             outcome.unread.push(Unread { path: file.path(&db).to_owned(), reason });
             continue;
         }
+        if let Some(view) = shown_configuration.take_if(|it| it.path.as_str() < file.path(&db)) {
+            indices.insert(configuration, u32::try_from(outcome.files.len()).unwrap_or(u32::MAX));
+            outcome.files.push(view);
+        }
         indices.insert(file, u32::try_from(outcome.files.len()).unwrap_or(u32::MAX));
         let mut view = SourceView {
             path: file.path(&db).to_owned(),
@@ -777,6 +928,8 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
             entities: 0,
             not_understood: 0,
             made_of: None,
+            is_configuration: false,
+            is_variant: programs_of(&db, file).iter().any(|it| it.is_variant(&db)),
         };
         if file.detected(&db) == Detected::Stx {
             let cross_reference = units(&db, file).iter().any(|it| it.language(&db) == Language::Pl7Xref);
@@ -790,6 +943,11 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
         }
         outcome.files.push(view);
     }
+    if let Some(view) = shown_configuration {
+        indices.insert(configuration, u32::try_from(outcome.files.len()).unwrap_or(u32::MAX));
+        outcome.files.push(view);
+    }
+    outcome.untargeted = untargeted(&db, &files, &outcome.active);
     for &program in programs(&db) {
         for code in &program_findings(&db, program).failed {
             outcome.internal_errors.push(format!("{}: rule {code} failed", program.key(&db)));
@@ -798,23 +956,104 @@ pub fn check(mut inputs: Vec<Input>, settings: Settings) -> Outcome {
     for finding in found.into_iter().flatten() {
         let name = |place: FilePlace| Some(Location { file: *indices.get(&place.file)?, range: place.range });
         if let Some(it) = finding.finding.map(name) {
-            let (entity, suppressed) = (finding.entity, finding.suppressed);
-            outcome.diagnostics.push(Diagnostic { finding: it, entity, suppressed });
+            let (entity, family, suppressed) = (finding.entity, finding.family, finding.suppressed);
+            outcome.diagnostics.push(Diagnostic { finding: it, entity, family, suppressed });
         }
     }
+    // Those of the configuration come last, and its path may stand anywhere.
+    outcome.diagnostics.sort_by_key(|it| it.finding.place.file);
     outcome.elapsed = start.elapsed();
     // Dropping all facts takes time, and the process is about to end.
     std::mem::forget(db);
     outcome
 }
 
-/// Families of files for which no controller is configured, though an active rule asks for one.
-fn untargeted(inputs: &[Input], settings: &Settings, active: &[&Rule]) -> Vec<Family> {
+/// A drawing with the name of the program that it shows a part of.
+#[derive(Debug, Clone)]
+pub struct ProgramDrawing {
+    pub program: String,
+    pub drawing: Drawing,
+}
+
+impl Opened {
+    /// All drawings of the programs, in their order, with the findings in them if they are wanted.
+    pub fn drawings(&self, with_findings: bool) -> Vec<ProgramDrawing> {
+        let db = &self.db;
+        let mut marks: FxHashMap<Unit<'_>, Vec<(TextRange, Mark)>> = FxHashMap::default();
+        if with_findings {
+            self.files.par_iter().for_each_with(db.clone(), |db, &file| {
+                file_findings(db, file);
+            });
+            for &file in &self.files {
+                let layout = layout(db, file);
+                for it in file_findings(db, file).iter().filter(|it| it.suppressed.is_none()) {
+                    let it = &it.finding;
+                    let after = layout.partition_point(|unit| unit.1 <= u32::from(it.place.range.start()));
+                    let Some(&(unit, offset)) = after.checked_sub(1).and_then(|it| layout.get(it)) else { continue };
+                    let Some(range) = it.place.range.checked_sub(TextSize::new(offset)) else { continue };
+                    let mark = Mark { code: it.rule.code, severity: it.severity, message: it.message.clone() };
+                    marks.entry(unit).or_default().push((range, mark));
+                }
+            }
+        }
+        programs(db).iter().flat_map(|&program| program_drawings(db, program, &marks)).collect()
+    }
+}
+
+fn program_drawings<'db>(
+    db: &'db RootDatabase,
+    program: Program<'db>,
+    marks: &FxHashMap<Unit<'db>, Vec<(TextRange, Mark)>>,
+) -> Vec<ProgramDrawing> {
+    let units = program_units(db, program);
+    let trees: Vec<Parse> = units.iter().map(|&unit| parse(db, unit)).collect();
+    let lower = |(&unit, tree): (&Unit<'db>, &Parse)| {
+        lower::lower(tree.syntax(), unit.text(db), unit.entity(db).clone(), unit.language(db))
+    };
+    let models: Vec<UnitModel> = units.iter().zip(&trees).map(lower).collect();
+    let views = units.iter().zip(&trees).zip(&models).map(|((&unit, tree), model)| draw::Unit {
+        text: unit.text(db),
+        language: unit.language(db),
+        tree: tree.syntax(),
+        model,
+        marks: marks.get(&unit).map_or(&[], Vec::as_slice),
+    });
+    let name = match program.files(db) {
+        [only] => only.path(db),
+        _ => program.key(db),
+    };
+    let name = Path::new(name).file_stem().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
+    let views: Vec<draw::Unit<'_>> = views.collect();
+    let facts = program_facts(db, program);
+    let drawings = draw::drawings(&name, &views, &index(db, program, &facts));
+    drawings.into_iter().map(|drawing| ProgramDrawing { program: name.clone(), drawing }).collect()
+}
+
+/// The configuration as a file of the report.
+fn configuration_view(db: &dyn Db) -> SourceView {
+    let file = db.project().configuration(db);
+    SourceView {
+        path: file.path(db).to_owned(),
+        text: file.text(db).clone(),
+        encoding: Encoding::Utf8.as_str(),
+        dialect: "configuration".to_owned(),
+        entities: 0,
+        not_understood: 0,
+        made_of: None,
+        is_variant: false,
+        is_configuration: true,
+    }
+}
+
+/// Families of code for which no controller is configured, though an active rule asks for one.
+fn untargeted(db: &dyn Db, files: &[SourceFile], active: &[&Rule]) -> Vec<Family> {
+    let settings = db.project().settings(db);
     let asks = |family: Family| active.iter().any(|it| it.by_controller && it.is_for_family(family));
-    let is_named = |it: &Input| it.detected == Detected::Stx && stx::controller(&it.source.text).is_some();
-    let is_read = |wanted: Family| inputs.iter().any(|it| family(it.detected) == Some(wanted) && !is_named(it));
+    let read = files.iter().filter(|&&it| named_controller(db, it).is_none()).map(|&it| families(db, it));
     let mut families = vec![Family::Pl7, Family::Pl72, Family::Step7];
-    families.retain(|&it| settings.target(it).controller().is_none() && asks(it) && is_read(it));
+    families.retain(|&it| {
+        settings.target(it).controller().is_none() && asks(it) && read.clone().any(|of| of.contains(&it))
+    });
     families
 }
 
@@ -836,8 +1075,11 @@ fn unread_form(db: &dyn Db, file: SourceFile) -> Option<&'static str> {
     code.all(|it| it.unsupported(db).is_some()).then_some(form)
 }
 
-/// What a file was recognised as, in words.
-pub fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
+fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
+    if families(db, file).len() > 1 {
+        let names: Vec<&str> = families(db, file).iter().map(|it| it.as_str()).collect();
+        return names.join(" and ");
+    }
     let language = units(db, file).iter().map(|it| it.language(db)).find(|it| *it != Language::Exchange);
     match (file.detected(db), language) {
         (Detected::Exchange, _) => "PL7 exchange file".to_owned(),

@@ -9,6 +9,7 @@
 pub mod analysis;
 pub mod cli;
 pub mod db;
+pub mod draw;
 pub mod lint;
 pub mod load;
 pub mod model;

@@ -64,10 +64,10 @@ fn help_is_no_mistake() {
 /// A file of which nothing is read is named with its form, whether the form is the file's or that of all its units.
 #[test]
 fn what_is_not_read_is_named() {
-    let rung = "RUNG\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
+    let rung = "RUNG L1:\nOPEN_CONTACT(I0,05),H_LINK(8),COIL(O0,03);\nEND_RUNG\n";
     let folder = folder(&[
         ("press.txt", "IL : PL7-2 - PRL\nLD I0,05\nIL : PL7-2 - POST\nLD I0,06\n"),
-        ("mixed.txt", &format!("LD : PL7-2 - POST\n{rung}ST : MAST - MAIN\n! %M1 := %M2;\n")),
+        ("mixed.txt", &format!("LD : PL7-2 - PRL\n{rung}ST : MAST - MAIN\n! %Q2.0 := %I1.0;\n")),
         ("plclint.toml", "[target]\ncontroller = 'TSX 17-20'"),
     ]);
     let ran = run(folder.path(), &["check", "--format", "concise"]);
@@ -120,7 +120,7 @@ fn wrong_arguments_are_wrong_usage() {
     usage(&["check", "--ignore", "all,no-such-rule"], "--ignore: no rule or group is called `no-such-rule`");
     usage(&["check", "--encoding", "ebcdic"], "--encoding: unknown encoding `ebcdic`");
     usage(&["check", "nowhere.awl"], "nowhere.awl: there is no such file or folder");
-    usage(&["check", "-", "a.awl"], "standard input (`-`) is checked alone");
+    usage(&["check", "-", "a.awl"], "standard input (`-`) is read alone");
     usage(&["check", "--stdin-filename", "a.awl"], "give `-` as the path");
     usage(&["check", "--config", "nowhere.toml"], "nowhere.toml: the configuration cannot be read");
     usage(&["tree", "nowhere.awl"], "nowhere.awl: the file cannot be read");
@@ -262,4 +262,142 @@ fn the_syntax_tree_holds_the_whole_text() {
     let ran = run(folder.path(), &["tree", "a.awl"]);
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     assert!(ran.out.starts_with("FC1 @0..59: Awl("), "{}", ran.out);
+}
+
+const CHART: &str = "GR7 : MAST - Cycle - CHART - PAGE 0\nINITIAL_STEP 0 AT (C 0,L 1) : END_STEP\n\
+                     TRANSITION (LD) AT (C 0,L 2) :\nRUNG\nOPEN_CONTACT(%I1.0),H_LINK(9),HASH_COIL;\nEND_RUNG\nEND_TRANSITION\n\
+                     DEST_CONNECTOR 0 AT (C 0,L 3)\n";
+const MACRO: &str = "GR7 : MAST - Cycle - MACRO1 - PAGE 0\nIN_STEP AT (C 0,L 1) : END_STEP\n\
+                     TRANSITION (ST) AT (C 0,L 2) : (*PHRASE*) %M1 (*END_PHRASE*) END_TRANSITION\nOUT_STEP AT (C 0,L 3) : END_STEP\n";
+
+#[test]
+fn one_drawing_goes_to_standard_output_or_into_a_file() {
+    let chart = CHART.replace(
+        "(LD) AT (C 0,L 2) :\nRUNG\nOPEN_CONTACT(%I1.0),H_LINK(9),HASH_COIL;\nEND_RUNG",
+        "(ST) AT (C 0,L 2) :\n(*PHRASE*) %I1.0 (*END_PHRASE*)",
+    );
+    let folder = folder(&[("a.txt", &chart)]);
+    let ran = run(folder.path(), &["draw", "a.txt"]);
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""), "findings do not matter");
+    assert!(ran.out.starts_with("<?xml") && ran.out.ends_with("</svg>\n"), "{}", ran.out);
+    assert!(ran.out.contains("prefers-color-scheme"));
+    let dark = run(folder.path(), &["draw", "a.txt", "--theme", "dark", "-o", "sub.svg"]);
+    assert_eq!((dark.code, dark.out.as_str()), (Some(0), ""), "{}", dark.err);
+    let dark = fs::read_to_string(folder.path().join("sub.svg")).expect("the file is there");
+    assert!(!dark.contains("prefers-color-scheme") && dark != ran.out);
+    let mut child = command(folder.path());
+    child.args(["draw", "-", "--stdin-filename", "a.txt", "--format", "dot"]);
+    let mut child = child.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the program starts");
+    child.stdin.take().expect("standard input").write_all(chart.as_bytes()).expect("it reads");
+    let ran: Ran = child.wait_with_output().expect("it ends").into();
+    assert!(ran.code == Some(0) && ran.out.starts_with("digraph "), "{}", ran.out);
+    let ran = run(folder.path(), &["draw", "a.txt", "--format", "mermaid"]);
+    assert!(ran.out.contains("\nflowchart TB\n"), "{}", ran.out);
+}
+
+#[test]
+fn several_drawings_go_into_a_folder() {
+    let folder = folder(&[("a.txt", &format!("{CHART}{MACRO}"))]);
+    assert_usage(
+        &run(folder.path(), &["draw", "."]),
+        "there are 3 drawings: `MAST - Cycle - CHART`, `MAST - Cycle - MACRO1`",
+    );
+    assert_usage(&run(folder.path(), &["draw", ".", "-o", "a.svg"]), "they do not go into a.svg");
+    let ran = run(folder.path(), &["draw", ".", "-o", "out/pictures"]);
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+    let names: Vec<&str> = ran.out.lines().filter_map(|it| it.split(": ").next()).collect();
+    let names: Vec<String> = names.iter().map(|it| it.replace('\\', "/")).collect();
+    let file = |name: &str| format!("out/pictures/{name}.svg");
+    let expected = ["chart-MAST-Cycle-CHART", "chart-MAST-Cycle-MACRO1", "ladder-MAST-Cycle-CHART-PAGE-0"].map(file);
+    assert_eq!(names, expected);
+    assert!(expected.iter().all(|it| folder.path().join(it).is_file()));
+    let again = run(folder.path(), &["draw", ".", "--only", "charts", "--unit", "macro1"]);
+    assert_eq!(again.out, fs::read_to_string(folder.path().join(&expected[1])).expect("the file is there"));
+    let ran = run(folder.path(), &["draw", "a.txt", "--format", "dot", "-o", "dots/"]);
+    assert_eq!(ran.out.lines().count(), 2, "{}", ran.out);
+    assert!(ran.err.contains("1 drawings of rungs are left out: dot cannot show them"), "{}", ran.err);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_wrong_usage() {
+    let folder = folder(&[("a.txt", CHART), ("b/b.txt", "ST : MAST - SR1\n! %M1 := %M2;\n"), ("c/c.md", "Nothing.\n")]);
+    let usage = |arguments: &[&str], what: &str| assert_usage(&run(folder.path(), arguments), what);
+    usage(&["draw"], "required arguments were not provided");
+    usage(&["draw", "nowhere"], "nowhere: there is no such file or folder");
+    usage(&["draw", "b"], "b: nothing to draw: there is no chart, no rung and no call in it");
+    usage(&["draw", "c"], "c: nothing to draw: no PLC program is recognised in it");
+    usage(&["draw", "a.txt", "--only", "calls"], "a.txt: nothing to draw: there is no call in it");
+    usage(&["draw", "a.txt", "--unit", "SR7"], "no drawing has `SR7` in its title; there are: `MAST - Cycle - CHART`");
+    usage(&["draw", "a.txt", "--only", "ladder", "--format", "dot"], "dot cannot show them, use --format svg");
+    usage(&["draw", "a.txt", "--format", "png"], "invalid value 'png'");
+    usage(&["draw", "a.txt", "--only", "charts", "-o", "no/such/a.svg"], "the drawing cannot be written");
+    let help = run(folder.path(), &["draw", "--help"]);
+    assert!(help.out.contains("Exit codes: 0 drawn, 2 nothing to draw"), "{}", help.out);
+}
+
+/// The pictures of the documentation are what the commands that it names draw.
+#[test]
+fn pictures_of_the_documentation_are_current() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/drawings.md")).expect("the page");
+    let commands: Vec<&str> = text.lines().filter_map(|it| it.trim().strip_prefix("plclint ")).collect();
+    let mut count = 0;
+    for line in commands.iter().filter(|it| it.contains("-o docs/")) {
+        let (arguments, file) = line.split_once(" -o ").expect("a file");
+        let ran = run(root, &arguments.split(' ').collect::<Vec<_>>());
+        let picture = fs::read_to_string(root.join(file)).expect("the picture").replace("\r\n", "\n");
+        assert_eq!(ran.code, Some(0), "{line}: {}", ran.err);
+        assert!(ran.out == picture, "run `plclint {line}` again");
+        count += 1;
+    }
+    assert_eq!(count, 3);
+}
+
+/// A value of the configuration is found in its file, by every format; files and lines of programs are counted without it.
+#[test]
+fn findings_stand_in_the_configuration() {
+    let config = "[target]\ncontroller = 'TSX 57-353'\n[[task]]\nname = 'MAST'\nperiod = '300ms'\nwatchdog = '700ms'\n";
+    let code = "(* heat *)\nST : MAST - MAIN\n! %M1 := %I1.0;\n! %Q2.0 := %M1;\n";
+    let files = [("a.st", code), ("plclint.toml", config), ("z/b.st", code), ("z/plclint.toml", config)];
+    let folder = folder(&files);
+    let arguments = |format| ["check", "--select", "P006", "--format", format, "a.st"];
+    let concise = run(folder.path(), &arguments("concise"));
+    assert_eq!(concise.code, Some(1));
+    let lines: Vec<&str> = concise.out.lines().collect();
+    assert_eq!(
+        lines[..2],
+        [
+            "plclint.toml:5:10: P006[task-period] error: the period of MAST is 300 ms, and may be 1 to 255 ms \
+             [configuration]",
+            "plclint.toml:6:12: P006[task-period] error: the watchdog of MAST is 700 ms, and may be 500 ms at most \
+             [configuration]",
+        ]
+    );
+    assert!(lines[2].starts_with("1 file, 1 program or block, 4 lines read"), "{}", concise.out);
+    let human = run(folder.path(), &arguments("human")).out;
+    for part in ["plclint.toml:5:10", "period = '300ms'", "a.st:2:1", "the task"] {
+        assert!(human.contains(part), "{part}: {human}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&run(folder.path(), &arguments("json")).out).expect("JSON");
+    let finding = &json["findings"][0];
+    assert_eq!((finding["path"].as_str(), finding["start"]["line"].as_u64()), (Some("plclint.toml"), Some(5)));
+    assert_eq!((finding["end"]["column"].as_u64(), finding["related"][0]["path"].as_str()), (Some(17), Some("a.st")));
+    assert_eq!(
+        (json["files"][1]["dialect"].as_str(), json["summary"]["files"].as_u64()),
+        (Some("configuration"), Some(1))
+    );
+    let sarif: serde_json::Value = serde_json::from_str(&run(folder.path(), &arguments("sarif")).out).expect("JSON");
+    let place = &sarif["runs"][0]["results"][0]["locations"][0]["physicalLocation"];
+    assert_eq!(place["artifactLocation"]["uri"], "plclint.toml");
+    assert_eq!(place["region"]["startLine"], 5);
+
+    // Each configuration of a run has its own findings, between those of the files in the order of paths.
+    let both = run(folder.path(), &["check", "--select", "P006", "--format", "concise", "a.st", "z"]).out;
+    let places: Vec<&str> = both.lines().filter_map(|it| it.split_once(": P006").map(|it| it.0)).collect();
+    assert_eq!(places, ["plclint.toml:5:10", "plclint.toml:6:12", "z/plclint.toml:5:10", "z/plclint.toml:6:12"]);
+    // What nobody has wrong is no file of the report.
+    let clean: serde_json::Value =
+        serde_json::from_str(&run(folder.path(), &["check", "--select", "W001", "--format", "json", "a.st"]).out)
+            .expect("JSON");
+    assert_eq!(clean["files"].as_array().map(Vec::len), Some(1));
 }

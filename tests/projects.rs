@@ -16,35 +16,10 @@ use tempfile::TempDir;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// A dBase III table: names and widths of its fields, then its records.
-fn table(fields: &[(&str, u8)], rows: &[&[&str]]) -> Vec<u8> {
-    let record = 1 + fields.iter().map(|it| u16::from(it.1)).sum::<u16>();
-    let header = u16::try_from(32 + 32 * fields.len() + 1).expect("few fields");
-    let mut out = vec![3, 116, 1, 1];
-    out.extend(u32::try_from(rows.len()).expect("few rows").to_le_bytes());
-    out.extend(header.to_le_bytes());
-    out.extend(record.to_le_bytes());
-    out.resize(32, 0);
-    for (name, width) in fields {
-        let mut field = [0; 32];
-        field[..name.len()].copy_from_slice(name.as_bytes());
-        field[11] = b'C';
-        field[16] = *width;
-        out.extend(field);
-    }
-    out.push(0x0D);
-    for row in rows {
-        out.push(b' ');
-        for (value, (_, width)) in row.iter().zip(fields) {
-            // The tables are in Windows-1252.
-            let mut cell: Vec<u8> = value.chars().map(|it| u8::try_from(u32::from(it)).expect("Latin-1")).collect();
-            cell.resize(usize::from(*width), b' ');
-            out.extend(cell);
-        }
-    }
-    out.push(0x1A);
-    out
-}
+#[path = "../src/source/testing.rs"]
+mod testing;
+
+use testing::table;
 
 fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
@@ -353,10 +328,73 @@ fn an_application_beside_exports_of_its_parts() {
         "variables.scy:5:45: N004[symbol-unused] note: the program does not use `Motor`, the symbol of `%Q2.1` [file]",
     ];
     assert_eq!(lines[..lines.len() - 1], expected);
-    // A second version of the section: which of the two the variables are for, nobody can tell.
+    // A second version of the section: the variables are for each of the two, and what one does not use says nothing.
     write("old.st", MAIN);
-    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001"]);
-    assert!(out.starts_with("plant.fef:12:12: W001"), "{out}");
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,N004,N001"]);
+    let lines: Vec<&str> = out.lines().collect();
+    let old = expected[0].replace("main.st", "old.st");
+    assert_eq!(lines[..lines.len() - 1], [expected[0], &old, expected[1], expected[2]]);
+    let summary = lines[lines.len() - 1];
+    assert!(summary.contains("; 2 files define what others of the folder define too"), "{summary}");
+    // What the variables have wrong is said once.
+    write("variables.scy", &VARIABLES.replace("Motor AT", "_Motor AT"));
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "N001"]);
+    assert_eq!(out.matches("N001").count(), 1, "{out}");
+}
+
+/// Findings of a text that is given as one file.
+fn findings_of(path: &str, text: &str) -> Vec<(String, String, String)> {
+    let outcome = check(path, text.as_bytes());
+    outcome.diagnostics.into_iter().map(|it| (it.finding.rule.code.into(), it.entity, it.finding.message)).collect()
+}
+
+#[test]
+fn parts_of_pl7_and_of_pl7_2_in_one_text() {
+    let rung =
+        |input: &str, operand: &str| format!("RUNG L1:\nOPEN_CONTACT({input}),H_LINK(8),COIL({operand});\nEND_RUNG\n");
+    let text = format!("LD : MAST - MAIN\n{}LD : PL7-2 - MAST\n{}", rung("%M0", "%M1"), rung("I0,00", "B1"));
+    let outcome = check("both.txt", text.as_bytes());
+    assert!(outcome.unread.is_empty(), "{:?}", outcome.unread);
+    let [file] = &outcome.files[..] else { panic!("one file") };
+    assert_eq!((file.not_understood, file.entities, file.dialect.as_str()), (0, 2, "PL7 and PL7-2"));
+    assert_eq!(outcome.diagnostics.iter().filter(|it| it.finding.rule.code == "X001").count(), 0);
+    // Each is a program of its own: the bit of one is not written in the other.
+    let twice = format!("{text}LD : PL7-2 - POST\n{}", rung("I0,01", "B1"));
+    let found = findings_of("both.txt", &twice);
+    assert!(found.iter().any(|it| it.0.starts_with('W') && it.2.contains("`B1`")), "{found:?}");
+    assert!(!found.iter().any(|it| it.0.starts_with('W') && it.2.contains("`%M1`")), "{found:?}");
+}
+
+#[test]
+fn a_part_in_a_language_that_pl7_2_does_not_have() {
+    let found =
+        findings_of("both.txt", "ST : MAST - MAIN\n! %M1 := %I1.0;\n\n(* A *)\nST : PL7-2 - FAST\n! %M2 := %M1;\n");
+    let conflicts: Vec<_> = found.iter().filter(|it| it.0 == "X001").collect();
+    let [(_, entity, message)] = &conflicts[..] else { panic!("{found:?}") };
+    assert_eq!(entity, "FAST - MAIN");
+    assert!(message.starts_with("PL7-2 has ladder and Grafcet"), "{message}");
+}
+
+/// What a page lacks is told where a heading says what the chart is, whichever page it is.
+#[test]
+fn every_page_of_a_chart_is_under_its_heading() {
+    let page = |number: u32, step: u32, action: &str| {
+        let next = step + 1;
+        format!(
+            "PAGE {number}\nINITIAL_STEP {step} AT (C 0,L 1) :\nEND_STEP\n\
+             TRANSITION (ST) AT (C 0,L 2) : (*PHRASE*) %I1.{step} (*END_PHRASE*) END_TRANSITION\n\
+             STEP {next} AT (C 0,L 3) :\n\
+             ACTION (P1,ST) : (*PHRASE*) {action}; (*END_PHRASE*) END_ACTION\nEND_STEP\n\
+             TRANSITION (ST) AT (C 0,L 4) : (*PHRASE*) %X{next}.T > 50 (*END_PHRASE*) END_TRANSITION\n\
+             DEST_CONNECTOR {step} AT (C 0,L 5)\nSOURCE_CONNECTOR {next} AT (C 0,L 0)\nEND_PAGE\n"
+        )
+    };
+    let chart = |second: &str| format!("{}{}", page(0, 0, "INC %MW1"), page(1, 4, second));
+    let codes = |text: &str| -> Vec<String> { findings_of("a.gr7", text).into_iter().map(|it| it.0).collect() };
+    let headed = |second: &str| codes(&format!("GR7 : MAST - P - CHART\n{}", chart(second)));
+    assert!(headed("SET %Q2.0").contains(&"G011".to_owned()), "{:?}", headed("SET %Q2.0"));
+    assert!(!headed("INC %MW2").contains(&"G011".to_owned()));
+    assert!(!codes(&chart("SET %Q2.0")).contains(&"G011".to_owned()), "a part of a chart");
 }
 
 /// A DFB type that somebody saved without the frame of the exchange format belongs to the sections beside it.

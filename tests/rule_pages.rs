@@ -6,6 +6,7 @@ use std::path::Path;
 use plclint::db::{self, Input};
 use plclint::lint::settings::{Folders, Overrides, Settings};
 use plclint::lint::{Rule, rules};
+use plclint::model::entity::Family;
 use plclint::source::detect::Dialect;
 
 const SECTIONS: [&str; 6] = ["What it does", "Why", "What to do instead", "Limits", "Sources", "Examples"];
@@ -181,6 +182,15 @@ fn pages_have_their_sections() {
         }
         assert!(rule.page.starts_with(&format!("# {} ({})\n", rule.name, rule.code)), "{}: title", rule.name);
         assert!(!rule.help().is_empty() && !rule.why().is_empty(), "{}: empty section", rule.name);
+        let families: Vec<&str> = [Family::Pl7, Family::Pl72, Family::Step7]
+            .into_iter()
+            .filter(|it| rule.is_for_family(*it))
+            .map(Family::as_str)
+            .collect();
+        let parts = rule.page.lines().filter_map(|it| it.strip_prefix("### "));
+        for family in parts.flat_map(|it| it.split(',')).map(str::trim) {
+            assert!(families.contains(&family), "{}: `### {family}` is no family that the rule is for", rule.name);
+        }
         assert!(rule.summary.ends_with('.'), "{}: the summary is a sentence", rule.name);
         assert!(rule.name.chars().all(|it| it.is_ascii_lowercase() || it.is_ascii_digit() || it == '-'));
     }

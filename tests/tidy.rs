@@ -151,3 +151,50 @@ fn rules_cite_their_sources() {
         }
     }
 }
+
+/// A row of `docs/coverage.md`: first and last line, and the rules.
+fn coverage_rows(table: &str) -> Vec<(u32, u32, Vec<&str>)> {
+    let rows = table.lines().filter_map(|it| it.strip_prefix("| ")).map(|it| it.split('|').map(str::trim));
+    rows.filter_map(|mut cells| {
+        let (first, last) = cells.nth(1)?.split_once('-')?;
+        Some((first.parse().ok()?, last.parse().ok()?, cells.next()?.split_whitespace().collect()))
+    })
+    .collect()
+}
+
+/// The checklists of the manuals leave no line out, and name each rule where it cites them.
+#[test]
+fn the_checklists_of_the_manuals_are_complete() {
+    let text = fs::read_to_string(root().join("docs/coverage.md")).expect("the page is there");
+    let mut wrong = Vec::new();
+    for (document, last) in [("PL7", 5952), ("PL72", 2019)] {
+        let table = text.split("\n## ").find(|it| it.contains(&format!("(`{document}`)\n"))).expect("a section");
+        let rows = coverage_rows(table);
+        let mut next = 1;
+        for (first, end, _) in &rows {
+            if *first != next {
+                wrong.push(format!("{document}: lines {next} to {first} are in no row"));
+            }
+            next = end + 1;
+        }
+        assert_eq!(next, last + 1, "{document}: the last row");
+        for (first, end, codes) in &rows {
+            let cites = |rule: &plclint::lint::Rule| {
+                let lines = rule.sources.iter().filter_map(|it| it.split_once(':').filter(|it| it.0 == document));
+                let mut starts = lines.filter_map(|it| it.1.split('-').next()?.parse::<u32>().ok());
+                starts.any(|it| (*first..=*end).contains(&it))
+            };
+            let mut expected: Vec<&str> =
+                plclint::lint::rules().iter().filter(|it| cites(it)).map(|it| it.code).collect();
+            expected.sort_unstable();
+            if *codes != expected {
+                wrong.push(format!(
+                    "{document}:{first}-{end}: `{}`, and it is `{}`",
+                    codes.join(" "),
+                    expected.join(" ")
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}

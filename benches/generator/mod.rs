@@ -324,3 +324,53 @@ fn il_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
         }
     }
 }
+
+/// A chart in IEC text: a loop of some divergences, every other one parallel, each with two branches of two steps. It has
+/// `6 * divergences + 1` steps.
+pub fn chart(divergences: usize) -> String {
+    let mut text = String::new();
+    ring(&mut text, "X", 0, divergences);
+    text
+}
+
+/// Charts of one section that nothing connects, each of some divergences. Their steps have names: there are more of them than
+/// numbers.
+pub fn charts(count: usize, divergences: usize) -> String {
+    let mut text = String::new();
+    for at in 0..count {
+        ring(&mut text, "Pas", at * (6 * divergences + 1), divergences);
+    }
+    text
+}
+
+/// `first`: number of the first step. Bits and words are numbered as the steps before the transitions.
+fn ring(text: &mut String, name: &str, first: usize, divergences: usize) {
+    let steps = 6 * divergences + 1;
+    for step in first..first + steps {
+        let word = if step == first { "INITIAL_STEP" } else { "STEP" };
+        writeln!(text, "{word} {name}{step} : END_STEP").expect("a string");
+    }
+    let mut cross = |from: &[usize], to: &[usize], receptivity: String| {
+        let list = |steps: &[usize]| steps.iter().map(|it| format!("{name}{it}")).collect::<Vec<_>>().join(",");
+        let (from, to) = (list(from), list(to));
+        writeln!(text, "TRANSITION FROM ({from}) TO ({to}) := {receptivity}; END_TRANSITION").expect("a string");
+    };
+    let bit = |step: usize| format!("%M{step}");
+    for at in 0..divergences {
+        let start = first + 6 * at;
+        let ([a, b], [c, d], end) = ([start + 1, start + 2], [start + 3, start + 4], start + 5);
+        if at % 2 == 0 {
+            cross(&[start], &[a], format!("%MW{start} > 100 AND %M{start}"));
+            cross(&[start], &[c], format!("%MW{start} <= 100 AND %M{start} OR %MW{start} > 600 AND NOT %M{start}"));
+            cross(&[b], &[end], bit(b));
+            cross(&[d], &[end], bit(d));
+        } else {
+            cross(&[start], &[a, c], bit(start));
+            cross(&[b, d], &[end], "TRUE".to_owned());
+        }
+        cross(&[a], &[b], bit(a));
+        cross(&[c], &[d], bit(c));
+        cross(&[end], &[start + 6], bit(end));
+    }
+    cross(&[first + steps - 1], &[first], bit(first + steps - 1));
+}

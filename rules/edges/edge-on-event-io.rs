@@ -36,7 +36,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             }
         } else if let Some(number) = raised_by(cx, uses.object) {
             sink.report(edge.site(), format!("the edge of `{name}` is tested, which EVT{number} exchanges, too"))
-                .note(format!("the configuration says that `{name}` raises EVT{number}"));
+                .related_all(cx.settings.trigger_site(number).map(|it| (it, format!("`{name}` raises EVT{number}"))));
         }
     }
 }

@@ -1,9 +1,11 @@
 //! G001: alternative branches of a chart that can be taken together.
 
 use crate::analysis::Site;
+use crate::analysis::conditions::{Answer, Witness};
+use crate::analysis::priority;
 use crate::analysis::reach::{Part, Study};
-use crate::analysis::satisfy::{Answer, Witness};
-use crate::lint::{ProgramCx, Sink};
+
+use crate::lint::{Applicability, Edit, ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for study in cx.studies() {
@@ -47,6 +49,11 @@ fn divergence(study: &Study<'_, '_>, part: &Part, later: usize, sink: &mut Sink<
         .related(net.step(step).site(), "the step that they leave");
     if witness.assumed {
         finding = finding.note("values that are compared with one another, or computed, were taken as free");
+    }
+    let others: Vec<usize> = found.iter().map(|it| it.0).collect();
+    if let Some(edits) = priority::give_way(net, later, &others) {
+        let edits = edits.into_iter().map(|(place, replacement)| Edit { place, replacement }).collect();
+        finding = finding.fix("Give the branches before it priority", Applicability::Unsafe, edits);
     }
     finding.note("branches of a divergence exclude each other when each asks that those before it are not taken");
 }

@@ -1,6 +1,7 @@
 //! G022: an output driven in the actions of several steps.
 
 use crate::analysis::Site;
+use crate::analysis::coactive;
 use crate::analysis::processing::{is_stored, raised_by_several};
 use crate::lint::{ProgramCx, Severity, Sink};
 use crate::model::object::{Class, Type};
@@ -11,6 +12,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             continue;
         }
         let Some(several) = raised_by_several(cx.program, uses) else { continue };
+        // Of steps that are active together, that is a mistake by itself.
+        if coactive::assigned(cx.program, || cx.studies(), uses).is_some() {
+            continue;
+        }
         let Some((second, action)) = several.places.get(several.second) else { continue };
         let others = several.places.iter().enumerate().filter(|it| it.0 != several.second);
         let others = others

@@ -5,27 +5,13 @@ use crate::analysis::drives::Hidden;
 use crate::analysis::processing::{InAction, is_stored, may_raise};
 use crate::analysis::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
-use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    // What is not there can only be missed in a whole program of which every place is known.
-    if !cx.program.complete {
-        return;
-    }
     let hidden = Hidden::new(cx.program);
-    for (at, uses) in (0..).zip(&cx.program.objects) {
-        let class = uses.object.class;
-        let is_bit = uses.object.ty == Type::Bool || class == Class::Symbol;
-        if !is_bit || !uses.object.is_fixed() || !matches!(class, Class::Output | Class::Memory | Class::Symbol) {
-            continue;
-        }
+    for uses in cx.known_bits() {
         let Some(raised) = Raised::new(cx.program, uses) else { continue };
-        let neighbours = || cx.neighbours(at).iter().map(|&it| &cx.program.objects[it as usize]);
-        // A memory bit that nothing reads is O007's affair.
-        let is_read = class != Class::Memory || uses.is_read() || neighbours().any(ObjectUses::is_read);
-        let is_placed = cx.program.writes_indirectly(&uses.object.footprint.area);
-        if !is_read || is_placed || neighbours().any(ObjectUses::is_written) || hidden.may_hold(class, Mode::Reset) {
+        if hidden.may_hold(uses.object.class, Mode::Reset) {
             continue;
         }
         let (place, action) = &raised.first;

@@ -16,7 +16,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let (skips, writes, exits) = (gaps::skips(model), gaps::writes(model), gaps::exits(model));
     let mut skipped: Vec<(u32, &Object, &Access)> = Vec::new();
     for access in model.accesses.iter().filter(|it| is_scanned(it.mode)) {
-        let missed = writes.get(&access.object.0).is_some_and(|it| it.leave_out(&model.exprs, Exprs::TRUE, &exits));
+        let missed = writes.get(&access.object.0).is_some_and(|it| it.leave_out(model, Exprs::TRUE, &exits));
         let object = model.object(access.object);
         if let Some(jump) = gaps::skip(&skips, access).filter(|_| missed)
             && !skipped.iter().rev().take_while(|it| it.0 == jump).any(|it| it.1 == object)

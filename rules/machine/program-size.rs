@@ -16,11 +16,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// PL7-2: the bytes of all elements.
 fn bytes(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let (Some(bytes), Some(memory)) = (cost::program_bytes(cx.program), cx.settings.program_memory()) else { return };
-    if bytes > u64::from(memory) {
+    if bytes > u64::from(*memory.get_ref()) {
         let Some(place) = first_code(cx) else { return };
         sink.report(place, format!("the program takes {bytes} bytes, and the memory for it has {memory}"))
-            .note("estimated from PL72:1915-1974: elements, networks and their comments; the chart itself and constants are not counted")
-            .note("the configuration says what the memory has, in `program-memory`");
+            .related(cx.settings.site(memory), "what the memory has")
+            .note("estimated from PL72:1915-1974: elements, networks and their comments; the chart itself and constants are not counted");
     }
 }
 

@@ -19,7 +19,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             let by_name = Footprint::new(Area::Symbol(key(&symbol.name)), 0, 1);
             let Some(object) = symbol.object.as_ref() else { continue };
             let raises = cx.settings.events().iter().filter_map(|it| it.trigger.as_ref());
-            let is_trigger = raises.into_iter().any(|it| it.0.footprint.overlaps(&object.footprint));
+            let is_trigger = raises.into_iter().any(|it| it.get_ref().0.footprint.overlaps(&object.footprint));
             if is_trigger || used.covers(&object.footprint) || used.covers(&by_name) {
                 continue;
             }

@@ -14,7 +14,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         (RUN_STOP_INPUT, cx.settings.run_stop_input(), "run-stop-input", "commands the controller to run and to stop"),
         (SECURITY_OUTPUT, cx.settings.security_output(), "security-output", "tells that the controller runs"),
     ];
-    for (address, _, key, role) in channels.into_iter().filter(|it| it.1) {
+    for (address, configured, key, role) in channels {
+        let Some(configured) = configured else { continue };
         let Ok(channel) = pl72::parse(address) else { continue };
         let uses = cx.program.objects.iter().filter(|it| it.object.footprint.overlaps(&channel.object.footprint));
         for it in uses {
@@ -26,7 +27,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 if text == address { format!("`{text}`") } else { format!("`{address}`, which is in `{text}`,") };
             sink.report(first.site(), format!("{subject} {role}, and the program uses it"))
                 .related_all(places.iter().skip(1).map(|it| (it.site(), "also here".to_owned())))
-                .note(format!("the configuration says `{key} = true`"));
+                .related(cx.settings.site(configured), format!("`{key}` says so"));
         }
     }
 }

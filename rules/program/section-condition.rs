@@ -11,7 +11,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             && !can_condition(section.condition)
         {
             let message = format!("`{}` cannot be the condition of a section", section.condition.text);
-            sink.report(ProgramIndex::heading(first), message)
+            let Some(place) = cx.settings.condition_site(cx.program.entity(first)) else { continue };
+            sink.report(place, message)
+                .related(ProgramIndex::heading(first), "the section")
                 .note("a bit %M, %S, %X, %I or %Q can, or one of a word, or an indexed one (PL7:1984)");
         }
     }

@@ -31,6 +31,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         if raising.iter().all(|it| own.contains(&it.unit)) {
             let message = format!("this section never runs: it alone can make its condition `{}` 1", condition.text);
             sink.report(ProgramIndex::heading(first), message)
+                .related_all(
+                    cx.settings.condition_site(program.entity(first)).map(|it| (it, "its condition".to_owned())),
+                )
                 .related_all(raising.iter().map(|it| (it.site(), format!("{} here", it.mode.verb()))))
                 .note("at a cold start the conditions of sections are 0 (PL7:1988)");
         }

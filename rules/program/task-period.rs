@@ -2,7 +2,6 @@
 
 use crate::analysis::Site;
 use crate::analysis::program::{Context, ProgramIndex};
-use crate::lint::settings::Milliseconds;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Family;
 use crate::model::object::{Area, Type};
@@ -28,24 +27,27 @@ fn configured(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         else {
             continue;
         };
-        let Some(place) = first_unit(cx.program, context) else { continue };
-        let written = |key: &str, it: Milliseconds| format!("the configuration says `{key} = \"{}ms\"`", it.0);
-        if let Some(period) = task.period.filter(|it| !range.contains(it.0)) {
+        let unit = first_unit(cx.program, context).map(|it| (it, "the task".to_owned()));
+        let period = task.period.as_ref().map(|it| (it.get_ref().0, cx.settings.site(it)));
+        if let Some((period, place)) = period.filter(|it| !range.contains(it.0)) {
             let (first, last, source) = (range.first, range.last, range.source);
-            sink.report(place, format!("the period of {name} is {} ms, and may be {first} to {last} ms", period.0))
-                .note(format!("{} ({source})", written("period", period)));
+            sink.report(place, format!("the period of {name} is {period} ms, and may be {first} to {last} ms"))
+                .related_all(unit.clone())
+                .note(format!("the range is given in {source}"));
         }
-        let Some(watchdog) = task.watchdog else { continue };
-        if watchdog.0 > WATCHDOG_MAX_MS.value {
+        let Some(configured) = &task.watchdog else { continue };
+        let (watchdog, place) = (configured.get_ref().0, cx.settings.site(configured));
+        let most = WATCHDOG_MAX_MS;
+        if watchdog > most.value {
+            let message = format!("the watchdog of {name} is {watchdog} ms, and may be {} ms at most", most.value);
+            sink.report(place, message).related_all(unit).note(format!("the limit is given in {}", most.source));
+        } else if let Some((period, at)) = period.filter(|it| !is_micro && watchdog <= it.0) {
             let message =
-                format!("the watchdog of {name} is {} ms, and may be {} ms at most", watchdog.0, WATCHDOG_MAX_MS.value);
-            sink.report(place, message).note(format!("{} ({})", written("watchdog", watchdog), WATCHDOG_MAX_MS.source));
-        } else if let Some(period) = task.period.filter(|it| !is_micro && watchdog.0 <= it.0) {
-            let message = format!(
-                "the watchdog of {name} is {} ms, which is not above its period of {} ms",
-                watchdog.0, period.0
-            );
-            sink.report(place, message).note("on a Premium the watchdog has to be longer than the period (PL7:2288)");
+                format!("the watchdog of {name} is {watchdog} ms, which is not above its period of {period} ms");
+            sink.report(place, message)
+                .related(at, "the period")
+                .related_all(unit)
+                .note("on a Premium the watchdog has to be longer than the period (PL7:2288)");
         }
     }
 }

@@ -2,38 +2,29 @@
 
 use crate::syntax::AstNode as _;
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHashSet;
 
+use crate::analysis::decided;
 use crate::lint::{Sink, UnitCx};
-use crate::syntax::pl7::ast::{Expr, IfStmt, Stmt};
+use crate::syntax::pl7::ast::{IfStmt, Stmt};
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    let place = |at: u32| cx.model.statements.get(at as usize).map(|it| it.range);
+    let mut repeated = FxHashSet::default();
+    for (later, first) in decided::repeated(cx.model) {
+        let Some((later, first)) = place(later).zip(place(first)) else { continue };
+        repeated.insert(later);
+        sink.report(later, format!("an earlier arm has the condition `{}` already", one_line(cx, later)))
+            .label("never true here")
+            .related(first, "first here");
+    }
     for statement in cx.nodes(SyntaxKind::IfStmt).filter_map(IfStmt::cast) {
-        if !repeats(cx, sink, statement) {
+        let mut conditions = statement.arms().filter_map(|it| it.condition());
+        if !conditions.any(|it| repeated.contains(&it.syntax().text_range())) {
             makes_no_difference(cx, sink, statement);
         }
     }
-}
-
-/// Reports conditions that an earlier arm has; whether the last arm's is one.
-fn repeats(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: IfStmt<'_>) -> bool {
-    if statement.arms().nth(1).is_none() {
-        return false;
-    }
-    let mut seen: FxHashMap<Vec<String>, TextRange> = FxHashMap::default();
-    let mut is_repeated = false;
-    for condition in statement.arms().filter_map(|it| it.condition()).filter_map(bare) {
-        let place = condition.syntax().text_range();
-        let first = *seen.entry(tokens(condition.syntax()).collect()).or_insert(place);
-        is_repeated = first != place;
-        if is_repeated {
-            sink.report(place, format!("the condition `{}` stands in an earlier arm", one_line(cx, place)))
-                .label("never true here")
-                .related(first, "first here");
-        }
-    }
-    is_repeated
 }
 
 fn makes_no_difference(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statement: IfStmt<'_>) {
@@ -46,14 +37,6 @@ fn makes_no_difference(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statemen
             .related(body.syntax().text_range(), "what is done when it is true")
             .related(other.syntax().text_range(), "is done by `ELSE` too");
     }
-}
-
-/// The expression without the parentheses around the whole.
-fn bare(mut expr: Expr<'_>) -> Option<Expr<'_>> {
-    while let Expr::Paren(it) = expr {
-        expr = it.expr()?;
-    }
-    Some(expr)
 }
 
 /// The tokens of a piece of program as PL7 reads them: no blanks, no comments, names in one case.

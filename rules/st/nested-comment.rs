@@ -3,20 +3,25 @@
 use rowan::{TextRange, TextSize};
 
 use crate::lint::{Sink, UnitCx};
-use crate::syntax::{Language, SyntaxKind};
+use crate::syntax::{AstNode as _, Language, SyntaxKind, exchange};
 
 /// Length of `(*` and of `*)`.
 const MARK: usize = 2;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    // What stands around the program in an exchange file is not published: its parentheses may mean anything.
-    if cx.model.language == Language::Exchange || !is_suspicious(cx.text) {
+    if !is_suspicious(cx.text) {
         return;
     }
+    // What the vendor keeps for its own tool is not published: its parentheses may mean anything.
+    let blocks = exchange::Block::all(cx.parse.syntax()).filter(|_| cx.model.language == Language::Exchange);
+    let blocks: Vec<_> = blocks.map(|it| (it.syntax().text_range().start(), it.is_called("VENDOR"))).collect();
+    let block_at = |at: TextSize| blocks.get(blocks.partition_point(|it| it.0 <= at).checked_sub(1)?);
+    let is_private = |at: TextSize| block_at(at).is_some_and(|it| it.1);
     let mark = TextSize::of("(*");
     for token in cx.parse.syntax().descendant_tokens() {
         let is_closed = token.kind() == SyntaxKind::Comment;
-        if !is_closed && token.kind() != SyntaxKind::UnclosedComment {
+        let is_comment = is_closed || token.kind() == SyntaxKind::UnclosedComment;
+        if !is_comment || is_private(token.text_range().start()) {
             continue;
         }
         let open = TextRange::at(token.text_range().start(), mark);

@@ -1,40 +1,37 @@
 //! V002: a preset that the timer or counter cannot hold.
 
-use rowan::TextRange;
-
+use crate::analysis::Site;
 use crate::analysis::counts;
-use crate::lint::{Sink, UnitCx};
+use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Family;
-use crate::model::expr::Expr;
 use crate::model::literal;
 use crate::model::object::{Class, Object, pl7, pl72};
-use crate::model::unit::{Pin, StatementKind};
+use crate::model::unit::{Mode, Pin};
 
-pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    for statement in &cx.model.statements {
-        let (access, value) = match statement.kind {
-            StatementKind::Store { access, value } => (access, value),
-            StatementKind::Drive { access, pin: Pin::Preset, value: Some(value), .. } => (access, value),
-            _ => continue,
-        };
-        let Expr::Int(value) = *cx.model.exprs.get(value) else { continue };
-        let Some(access) = cx.model.accesses.get(access as usize) else { continue };
-        let object = cx.model.object(access.object);
-        let wrong = match statement.kind {
-            StatementKind::Store { .. } => stored(cx, object, value),
-            _ => loaded(cx, object, value),
-        };
-        if let Some(message) = wrong {
-            sink.report(cx.model.place(access.anchor), message);
+pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    for object in &cx.program.objects {
+        for it in object.with_mode(|it| matches!(it, Mode::Store | Mode::Drive(Pin::Preset))) {
+            let Some(value) = it.it.constant else { continue };
+            let units = cx.program.units.get(it.unit as usize);
+            let Some(written) = units.and_then(|unit| unit.objects.get(it.it.object as usize)) else { continue };
+            let wrong = match it.mode {
+                Mode::Store => stored(cx, &written.object, value),
+                _ => loaded(cx, &written.object, value),
+            };
+            if let Some(message) = wrong {
+                sink.report(it.site(), message);
+            }
         }
     }
 }
 
 /// `%TM0.P := 10000`.
-fn stored(cx: &UnitCx<'_>, object: &Object, value: i64) -> Option<String> {
-    let (family, is_preset) = match cx.model.language.is_pl7_2() {
-        true => (Family::Pl72, pl72::is_preset(object)),
-        false => (Family::Pl7, pl7::is_preset(object)),
+fn stored(cx: &ProgramCx<'_>, object: &Object, value: i64) -> Option<String> {
+    let family = cx.program.family;
+    let is_preset = match family {
+        Family::Pl7 => pl7::is_preset(object),
+        Family::Pl72 => pl72::is_preset(object),
+        Family::Step7 => false,
     };
     if !is_preset {
         return None;
@@ -47,7 +44,7 @@ fn stored(cx: &UnitCx<'_>, object: &Object, value: i64) -> Option<String> {
 }
 
 /// `L 1000`, `S Z 1`: the counter reads three decimal digits of the low word. What `C#` says is judged as a constant.
-fn loaded(cx: &UnitCx<'_>, object: &Object, value: i64) -> Option<String> {
+fn loaded(cx: &ProgramCx<'_>, object: &Object, value: i64) -> Option<String> {
     if object.class != Class::Counter {
         return None;
     }

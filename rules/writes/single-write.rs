@@ -1,8 +1,8 @@
 //! W001: a bit driven by assignment in more than one place.
 
 use crate::analysis::Site;
-use crate::analysis::drives;
 use crate::analysis::program::GlobalUse;
+use crate::analysis::{coactive, drives};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
@@ -39,6 +39,14 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))
                 .label("assigned here too, which overrides the other")
                 .related_all(others.iter().map(|it| (it.site(), format!("also {} here", it.mode.verb()))));
+        } else if let Some(it) = coactive::assigned(cx.program, || cx.studies(), uses) {
+            let (first, second) = (it.first, it.second);
+            let message =
+                format!("`{}` is assigned in the actions of steps that are active together", uses.object.text);
+            sink.report(second.0.site(), message)
+                .label(format!("in {}, which runs after the other", second.1.describe()))
+                .related(first.0.site(), format!("also {} here, in {}", first.0.mode.verb(), first.1.describe()))
+                .note(format!("the chart comes to both by {}", it.trace));
         }
     }
 }

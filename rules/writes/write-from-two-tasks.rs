@@ -4,7 +4,7 @@ use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
 use crate::analysis::drives;
-use crate::analysis::program::GlobalUse;
+use crate::analysis::program::{GlobalUse, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::{Mode, Pin};
@@ -19,13 +19,13 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         return;
     }
     for uses in program.objects.iter().filter(|it| it.is_written() && is_the_programs(it.object)) {
-        let mut writes: Vec<GlobalUse<'_>> = uses.uses.iter().filter(|it| computes(it)).copied().collect();
+        let mut writes: Vec<GlobalUse<'_>> = uses.uses.iter().filter(|it| gives(it)).copied().collect();
         if writes.len() < 2 {
             continue;
         }
         drives::in_order(program, &mut writes);
         let interrupts = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
-            program.in_other_tasks(a.unit, b.unit) && (!is_drive(a.mode) || a.mode == b.mode)
+            program.in_other_tasks(a.unit, b.unit) && (!is_drive(a.mode) || a.mode == b.mode) && disturb(program, a, b)
         };
         let compared = &writes[..writes.len().min(MAX_COMPARED)];
         let pair = (1..compared.len())
@@ -62,15 +62,28 @@ fn is_the_programs(object: &Object) -> bool {
     class && object.is_fixed() && object.footprint.area != Area::OpenData
 }
 
-/// Whether a place gives the object a value of its own, or drives an input of it. Set, reset and the store of a constant
-/// hand something over in one step, as a task does that takes note of what another told it.
-fn computes(it: &GlobalUse<'_>) -> bool {
+/// Whether a place gives the object a value of its own, or drives an input of it. Set and reset hand something over in one
+/// step, as a task does that takes note of what another told it.
+fn gives(it: &GlobalUse<'_>) -> bool {
     let gives = match it.mode {
         Mode::Assign | Mode::AssignNot | Mode::Store | Mode::Output => true,
         Mode::Drive(pin) => !matches!(pin, Pin::Reset | Pin::Enable),
         _ => false,
     };
-    gives && it.it.constant.is_none() && !it.it.own
+    gives && !it.it.own
+}
+
+/// Whether one of two writes undoes the other. A constant hands something over, too, unless one of the two is written in each
+/// scan, or the other is made of the object's own value, so that a constant which comes in between is lost.
+fn disturb(program: &ProgramIndex<'_>, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
+    let is_constant = |it: &GlobalUse<'_>| it.it.constant.is_some() && !is_drive(it.mode);
+    let in_each_scan =
+        |it: &GlobalUse<'_>| !it.it.conditional && program.sure.get(it.unit as usize).is_some_and(|it| *it);
+    match (is_constant(a), is_constant(b)) {
+        (false, false) => true,
+        (true, true) => false,
+        (one, _) => in_each_scan(a) || in_each_scan(b) || if one { b.it.holds } else { a.it.holds },
+    }
 }
 
 fn is_drive(mode: Mode) -> bool {

@@ -11,7 +11,7 @@ use smol_str::SmolStr;
 use super::Site;
 use super::facts::{FactObject, UnitFacts, Use};
 use crate::model::UnitModel;
-use crate::model::chart::{self, ActionKind, CodeLanguage, ConnectorKind, Graph, Node, StepKind, StepName};
+use crate::model::chart::{self, ActionKind, CodeLanguage, ConnectorKind, Graph, Node, Room, StepKind, StepName};
 use crate::model::entity::{Entity, Task};
 use crate::model::expr::{Expr, Exprs, Guard};
 use crate::model::object::{Area, Footprint};
@@ -51,6 +51,7 @@ pub struct FactTransition {
     pub sources: Vec<Node>,
     pub targets: Vec<Node>,
     pub receptivity: FactReceptivity,
+    pub room: Option<Room>,
     pub anchor: u32,
 }
 
@@ -190,6 +191,7 @@ impl ChartFacts {
                     sources: it.sources.clone(),
                     targets: it.targets.clone(),
                     receptivity: FactReceptivity::new(it.receptivity, exprs),
+                    room: it.room,
                     anchor: it.anchor,
                 })
                 .collect(),
@@ -223,7 +225,7 @@ impl ChartFacts {
 }
 
 /// Task and section that a unit's chart belongs to.
-fn section(entity: &Entity) -> Option<(Task, Option<&SmolStr>)> {
+pub fn section(entity: &Entity) -> Option<(Task, Option<&SmolStr>)> {
     match entity {
         Entity::Pl7 { task, section, .. } => Some((*task, section.as_ref())),
         _ => None,

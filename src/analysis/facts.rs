@@ -8,15 +8,16 @@ use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::chart::ChartFacts;
+use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
-use super::{conditions, gaps};
+use super::gaps;
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
 use crate::model::entity::{BlockName, Entity};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::object::{Class, Object, Type};
-use crate::model::unit::{Access, Actual, Call, Callee, Formal, Mode, Section, StatementKind};
+use crate::model::unit::{Access, Actual, Call, Callee, Formal, Index, Mode, Pin, Section, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -39,7 +40,7 @@ pub struct Use {
     pub skipped_by: Option<u32>,
     /// For an edge test: a run of the unit may make it without the unit's own write of the object.
     pub stale: bool,
-    /// For writes: the constant that is written, when it is one.
+    /// For writes, and for a block that takes its preset: the constant that is written, when it is one.
     pub constant: Option<i64>,
     /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever. For other writes: the object
     /// takes its own value, so that nothing changes.
@@ -128,6 +129,8 @@ pub struct UnitFacts {
     /// In execution order.
     pub uses: Vec<Use>,
     pub calls: Vec<FactCall>,
+    /// What stands in the brackets of indexed objects; an object is one of `objects`.
+    pub indexes: Vec<Index>,
     /// Pairs of calls, by index, that never run in the same scan.
     pub exclusive_calls: Vec<(u32, u32)>,
     /// Pairs of uses, by anchor, the smaller first, that never take effect in the same scan: of a set, reset or edge
@@ -178,11 +181,16 @@ impl UnitFacts {
         let numbers = numbers(model);
         let mut given = Given { values: vec![None; model.accesses.len()], whens: vec![None; model.accesses.len()] };
         let mut conditional_calls: FxHashSet<u32> = FxHashSet::default();
+        let mut presets: FxHashMap<u32, ExprId> = FxHashMap::default();
         for (at, statement) in model.statements.iter().enumerate() {
             let at = u32::try_from(at).unwrap_or(u32::MAX);
             match statement.kind {
                 StatementKind::Assign { access, value } | StatementKind::Store { access, value } => {
                     set(&mut given.values, access, value);
+                }
+                StatementKind::Drive { access, pin: Pin::Preset, when, value: Some(value) } => {
+                    presets.insert(access, value);
+                    set(&mut given.whens, access, when);
                 }
                 StatementKind::Set { access, when }
                 | StatementKind::Reset { access, when }
@@ -212,7 +220,8 @@ impl UnitFacts {
                     Some(StatementKind::Call(call)) => Some(*call),
                     _ => None,
                 };
-                let constant = value.and_then(|it| match *model.exprs.get(it) {
+                let preset = || presets.get(&u32::try_from(at).ok()?).copied();
+                let constant = value.or_else(preset).and_then(|it| match *model.exprs.get(it) {
                     Expr::Int(value) => Some(value),
                     Expr::Bool(value) => Some(i64::from(value)),
                     _ => None,
@@ -233,7 +242,7 @@ impl UnitFacts {
                         .filter(|_| access.mode.is_edge() || matches!(access.mode, Mode::EdgeMemory | Mode::Drive(_)))
                         .and_then(|it| Some(model.jumps.get(it as usize)?.anchor)),
                     stale: access.mode.is_edge()
-                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(&model.exprs, access.path, &[])),
+                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(model, access.path, &[])),
                     constant,
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
@@ -244,7 +253,7 @@ impl UnitFacts {
             })
             .collect();
         let missed = |at: u32| {
-            let it = writes.get(&at).filter(|it| it.leave_out(&model.exprs, Exprs::TRUE, &exits))?;
+            let it = writes.get(&at).filter(|it| it.leave_out(model, Exprs::TRUE, &exits))?;
             Some(it.first().0)
         };
         let objects = (0..).zip(&model.objects).zip(numbers);
@@ -254,6 +263,7 @@ impl UnitFacts {
             objects: objects.map(|((at, object), number)| FactObject::new(object, number, missed(at))).collect(),
             uses,
             calls: calls(model),
+            indexes: model.indexes.clone(),
             exclusive_calls: exclusive_calls(model),
             exclusive_uses: exclusive_uses(model, &given),
             instance_of: model.instance_of.clone(),
@@ -493,7 +503,7 @@ fn same_drive(model: &UnitModel, given: &Given, first: (u32, &Access), second: (
         return true;
     }
     let (a, b) = (effective(model, first, a.path), effective(model, second, b.path));
-    conditions::together(&model.exprs, &[a.0, a.1, b.0, b.1]) == conditions::Verdict::Never
+    Space::of(model).together(&[a.0, a.1, b.0, b.1]) == Verdict::Never
 }
 
 /// Path to a write, and the condition at the instruction itself. A pin of a timer or counter takes 0 as well as 1: the
@@ -554,7 +564,7 @@ fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
         for other in others {
             let (a, path_a, call_a) = conditional[other];
             let all = [path_a, call_a.when, path_b, call_b.when];
-            if conditions::together(&model.exprs, &all) == conditions::Verdict::Never {
+            if Space::of(model).together(&all) == Verdict::Never {
                 pairs.push((a, b));
             }
         }

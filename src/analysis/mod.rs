@@ -3,12 +3,15 @@
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
 pub mod calls;
+pub mod capacity;
 pub mod channels;
 pub mod chart;
+pub mod coactive;
 pub mod conditions;
 pub mod connectors;
 pub mod cost;
 pub mod counts;
+pub mod decided;
 pub mod drives;
 pub mod edges;
 pub mod facts;
@@ -18,10 +21,10 @@ pub mod gaps;
 pub mod known;
 pub mod modules;
 pub mod operands;
+pub mod priority;
 pub mod processing;
 pub mod program;
 pub mod reach;
-pub mod satisfy;
 pub mod size;
 pub mod symbols;
 
@@ -32,4 +35,18 @@ pub struct Site {
     pub unit: u32,
     /// Index into the anchors of the unit's model.
     pub anchor: u32,
+}
+
+impl Site {
+    /// Instead of a unit: the file of the configuration.
+    const CONFIGURATION: u32 = u32::MAX;
+
+    /// A key or value of the configuration, by its number among them.
+    pub fn configured(anchor: u32) -> Self {
+        Self { unit: Self::CONFIGURATION, anchor }
+    }
+
+    pub fn is_configured(self) -> bool {
+        self.unit == Self::CONFIGURATION
+    }
 }

@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use super::Site;
 use super::chart::{ChartFacts, FactAction};
 use super::program::{GlobalCall, GlobalUse, ObjectUses, ProgramIndex};
+use super::reach::{Net, Node};
 use crate::model::chart::{ActionKind, Graph, StepName};
 use crate::model::entity::{Entity, Part, Task};
 use crate::model::unit::Mode;
@@ -93,6 +94,22 @@ impl<'a> InAction<'a> {
         Some(Self { chart, action: chart.action_at(it.it.anchor)? })
     }
 
+    /// Whether it runs while its steps are active.
+    pub fn is_continuous(&self) -> bool {
+        self.action.kind == Some(ActionKind::Continuous)
+    }
+
+    /// Whether it runs when its steps go off.
+    pub fn is_at_end(&self) -> bool {
+        self.action.kind == Some(ActionKind::Deactivation)
+    }
+
+    /// The steps that run it, in a net that has them.
+    pub fn nodes(&self, program: &ProgramIndex<'_>, unit: u32, net: &Net<'_, '_>) -> Vec<Node> {
+        let section = program.units.get(unit as usize).and_then(|it| super::chart::section(&it.entity));
+        section.map_or_else(Vec::new, |section| net.named(section, self.chart.graph, self.names()))
+    }
+
     fn names(&self) -> impl Iterator<Item = &'a StepName> {
         let chart = self.chart;
         self.action.steps.iter().filter_map(|&it| chart.steps.get(it as usize)?.name.as_ref())
@@ -111,7 +128,7 @@ impl<'a> InAction<'a> {
 
     /// Whether it runs in each scan while one step is active.
     pub fn is_continuous_of_one_step(&self) -> bool {
-        self.action.kind == Some(ActionKind::Continuous) && self.action.steps.len() == 1
+        self.is_continuous() && self.action.steps.len() == 1
     }
 
     /// ``step `3` ``, ``steps `3` and `5` ``, of an expansion ``step `M2.3` ``; of many steps, the first.

@@ -1,20 +1,21 @@
 //! The situations that a chart can reach, by the rules of evolution (GRF:128-152, PL7:5123-5186).
 //!
 //! All transitions that can be crossed are crossed at once; the steps before them go off, those behind them go on, and a
-//! step that does both stays on. Receptivities are free, but for what [`satisfy`] excludes: which of those that are valid
+//! step that does both stays on. Receptivities are free, but for what [`conditions`] excludes: which of those that are valid
 //! together can be true together. Transitions that share no step and no object are independent: crossing them one after
 //! the other reaches what crossing them together reaches.
 //!
 //! Charts that nothing connects are looked at apart. What is too large is said to be not decided.
 
 use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
 
 use super::chart::{Chart, FactReceptivity, Step, Transition};
+use super::conditions::{Answer, Objects, Space};
 use super::facts::{self, UnitFacts};
 use super::program::ProgramIndex;
-use super::satisfy::{Answer, Space};
 use crate::model::chart::{Graph, StepKind, StepName};
-use crate::model::entity::Family;
+use crate::model::entity::{Family, Task};
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::Mode;
@@ -138,6 +139,25 @@ impl<'p, 'a> Study<'p, 'a> {
     }
 }
 
+impl Part {
+    /// The first situation found, of those from the initial one on, in which one step of each list is active, two different
+    /// ones. Branches of one step are not taken together in it.
+    pub fn active_together(&self, a: &[Node], b: &[Node]) -> Option<(u32, [Node; 2])> {
+        let places = |nodes: &[Node]| -> Vec<(usize, Node)> {
+            nodes.iter().filter_map(|it| Some((self.component.nodes.binary_search(it).ok()?, *it))).collect()
+        };
+        let (a, b) = (places(a), places(b));
+        if a.is_empty() || b.is_empty() {
+            return None;
+        }
+        (0..).zip(&self.own.situations).find_map(|(at, situation)| {
+            let mut active = a.iter().filter(|it| has(situation, it.0));
+            let both = active.find_map(|x| Some((x, b.iter().find(|y| y.0 != x.0 && has(situation, y.0))?)));
+            both.map(|(x, y)| (at, [x.1, y.1]))
+        })
+    }
+}
+
 /// A set of steps of a component, by their places in it.
 pub type Situation = Box<[u64]>;
 
@@ -208,6 +228,18 @@ impl<'p, 'a> Net<'p, 'a> {
         u32::try_from(before).unwrap_or(u32::MAX).saturating_add(step)
     }
 
+    /// The steps of some names in a graph of a section, where the net has them.
+    pub fn named<'s>(
+        &self,
+        section: (Task, Option<&SmolStr>),
+        graph: Graph,
+        names: impl Iterator<Item = &'s StepName>,
+    ) -> Vec<Node> {
+        let is_it = |it: &&Chart<'_>| (it.task, it.section) == section && it.graph == graph;
+        let Some((at, chart)) = self.charts.iter().enumerate().find(|it| is_it(it.1)) else { return Vec::new() };
+        names.filter_map(|it| Some(self.node(at, chart.step_named(it)?))).collect()
+    }
+
     pub fn step(&self, node: Node) -> &'p Step<'a> {
         let (chart, step) = self.nodes[node as usize];
         &self.charts[chart].steps[step as usize]
@@ -239,7 +271,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     pub fn space(&self) -> Space<'_> {
-        Space { exprs: &self.exprs, objects: &self.objects, family: self.family }
+        Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family, known: &[] }
     }
 
     fn cross(&mut self, program: &ProgramIndex<'a>) {
@@ -1071,31 +1103,40 @@ mod tests {
         })
     }
 
-    #[derive(Default)]
+    /// What a transition of such a chart asks: a bit of its own, or the value of a word.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    enum Asked {
+        Bit(usize),
+        Word(u32, usize),
+    }
+
+    #[derive(Debug, Clone)]
+    struct Arc {
+        from: Vec<u32>,
+        to: Vec<u32>,
+        asked: Asked,
+    }
+
+    #[derive(Debug, Clone, Default)]
     struct Writer {
-        text: String,
         steps: u32,
-        inputs: u32,
+        arcs: Vec<Arc>,
         /// The first divergence of a kind is closed as one of the other: parallel, or alternatives.
         wrong: Option<bool>,
-        /// Step, or steps, where that was done.
+        /// That was done.
         broken: bool,
+        without_start: bool,
     }
 
     impl Writer {
         fn step(&mut self) -> u32 {
-            let word = if self.steps == 0 { "INITIAL_STEP" } else { "STEP" };
-            writeln!(self.text, "{word} X{} : END_STEP", self.steps).unwrap();
             self.steps += 1;
             self.steps - 1
         }
 
-        fn transition(&mut self, from: &[u32], to: &[u32], receptivity: Option<String>) {
-            let list = |steps: &[u32]| steps.iter().map(|it| format!("X{it}")).collect::<Vec<_>>().join(",");
-            self.inputs += 1;
-            let receptivity = receptivity.unwrap_or_else(|| format!("%M{}", self.inputs));
-            let (from, to) = (list(from), list(to));
-            writeln!(self.text, "TRANSITION FROM ({from}) TO ({to}) := {receptivity}; END_TRANSITION").unwrap();
+        fn transition(&mut self, from: &[u32], to: &[u32], word: Option<(u32, usize)>) {
+            let asked = word.map_or(Asked::Bit(self.arcs.len()), |(word, value)| Asked::Word(word, value));
+            self.arcs.push(Arc { from: from.to_vec(), to: to.to_vec(), asked });
         }
 
         /// First and last step.
@@ -1123,7 +1164,7 @@ mod tests {
                     } else {
                         let word = self.steps;
                         for (at, &start) in starts.iter().enumerate() {
-                            self.transition(&[first], &[start], Some(format!("%MW{word} = {at}")));
+                            self.transition(&[first], &[start], Some((word, at)));
                         }
                     }
                     if is_parallel != is_wrong {
@@ -1136,13 +1177,188 @@ mod tests {
             }
         }
 
-        fn chart(block: &Block, wrong: Option<bool>) -> (String, bool) {
+        fn new(block: &Block, wrong: Option<bool>) -> Self {
             let mut writer = Self { wrong, ..Self::default() };
             let (first, last) = writer.write(block);
             let behind = writer.step();
             writer.transition(&[last], &[behind], None);
             writer.transition(&[behind], &[first], None);
-            (writer.text, writer.broken)
+            writer
+        }
+
+        fn chart(block: &Block, wrong: Option<bool>) -> (String, bool) {
+            let writer = Self::new(block, wrong);
+            (writer.text(), writer.broken)
+        }
+
+        fn text(&self) -> String {
+            let mut text = String::new();
+            for step in 0..self.steps {
+                let word = if step == 0 && !self.without_start { "INITIAL_STEP" } else { "STEP" };
+                writeln!(text, "{word} X{step} : END_STEP").unwrap();
+            }
+            let list = |steps: &[u32]| steps.iter().map(|it| format!("X{it}")).collect::<Vec<_>>().join(",");
+            for it in &self.arcs {
+                let asked = match it.asked {
+                    Asked::Bit(n) => format!("%M{n}"),
+                    Asked::Word(word, value) => format!("%MW{word} = {value}"),
+                };
+                let (from, to) = (list(&it.from), list(&it.to));
+                writeln!(text, "TRANSITION FROM ({from}) TO ({to}) := {asked}; END_TRANSITION").unwrap();
+            }
+            text
+        }
+
+        /// Whether the chart has a mistake, found by running it with everything that can be true together. `None` when that
+        /// is too much.
+        fn is_faulty(&self) -> Option<bool> {
+            let mut known: BTreeSet<BTreeSet<u32>> = BTreeSet::new();
+            let mut open: Vec<BTreeSet<u32>> = if self.without_start { Vec::new() } else { vec![[0].into()] };
+            let mut faulty = false;
+            while let Some(active) = open.pop() {
+                if !known.insert(active.clone()) {
+                    continue;
+                }
+                let valid: Vec<&Arc> =
+                    self.arcs.iter().filter(|it| it.from.iter().all(|it| active.contains(it))).collect();
+                if known.len() > 500 || valid.len() > 8 {
+                    return None;
+                }
+                // A chart that ends, and waits for nothing, is meant to.
+                let waits = self.arcs.iter().any(|it| it.from.iter().any(|it| active.contains(it)));
+                faulty |= valid.is_empty() && (waits || self.has_loop());
+                for set in 1..1_usize << valid.len() {
+                    let is_in = |at: usize| set >> at & 1 == 1;
+                    let agree = |a: usize, b: usize| match (valid[a].asked, valid[b].asked) {
+                        (Asked::Bit(x), Asked::Bit(y)) if x == y => is_in(a) == is_in(b),
+                        (Asked::Word(x, u), Asked::Word(y, v)) if x == y && u == v => is_in(a) == is_in(b),
+                        (Asked::Word(x, _), Asked::Word(y, _)) if x == y => !(is_in(a) && is_in(b)),
+                        _ => true,
+                    };
+                    if !(0..valid.len()).all(|a| (0..a).all(|b| agree(a, b))) {
+                        continue;
+                    }
+                    let crossed: Vec<&Arc> = (0..valid.len()).filter(|it| is_in(*it)).map(|it| valid[it]).collect();
+                    let left: Vec<u32> = crossed.iter().flat_map(|it| it.from.iter().copied()).collect();
+                    let off: BTreeSet<u32> = left.iter().copied().collect();
+                    let mut after: BTreeSet<u32> = active.difference(&off).copied().collect();
+                    faulty |= off.len() < left.len();
+                    for to in crossed.iter().flat_map(|it| &it.to) {
+                        faulty |= !after.insert(*to);
+                    }
+                    open.push(after);
+                }
+            }
+            let reached: BTreeSet<u32> = known.into_iter().flatten().collect();
+            Some(faulty || reached.len() < self.steps as usize)
+        }
+
+        fn has_loop(&self) -> bool {
+            let leads = |from: u32| self.arcs.iter().filter(move |it| it.from.contains(&from)).flat_map(|it| &it.to);
+            (0..self.steps).any(|start| {
+                let (mut seen, mut open) = (BTreeSet::new(), vec![start]);
+                while let Some(at) = open.pop() {
+                    open.extend(leads(at).filter(|it| seen.insert(**it)));
+                }
+                seen.contains(&start)
+            })
+        }
+    }
+
+    /// A mistake of drawing, at a place that a number chooses; `None` where the chart has no such place.
+    #[derive(Debug, Clone, Copy)]
+    enum Slip {
+        /// A transition is missing.
+        Removed,
+        /// It leads elsewhere.
+        Misled(u32),
+        /// It asks what its neighbour asks, behind one step.
+        Copied,
+        /// It asks what any other asks.
+        Shared(usize),
+        /// One of the steps behind it, or before it, is forgotten.
+        Unopened,
+        Unjoined,
+        /// It waits for one more step.
+        Overjoined(u32),
+        /// There is no initial step.
+        Unstarted,
+    }
+
+    fn slip() -> impl Strategy<Value = Slip> {
+        prop_oneof![
+            Just(Slip::Removed),
+            any::<u32>().prop_map(Slip::Misled),
+            Just(Slip::Copied),
+            any::<usize>().prop_map(Slip::Shared),
+            Just(Slip::Unopened),
+            Just(Slip::Unjoined),
+            any::<u32>().prop_map(Slip::Overjoined),
+            Just(Slip::Unstarted),
+        ]
+    }
+
+    impl Slip {
+        fn make(self, chart: &mut Writer, place: usize) -> Option<()> {
+            let count = chart.arcs.len();
+            let steps = chart.steps;
+            let places = |wanted: &dyn Fn(&Arc) -> bool| {
+                let places: Vec<usize> = (0..count).filter(|it| wanted(&chart.arcs[*it])).collect();
+                (!places.is_empty()).then(|| places[place % places.len()])
+            };
+            match self {
+                Self::Removed => drop(chart.arcs.remove(place % count)),
+                Self::Misled(to) => chart.arcs[place % count].to = vec![to % steps],
+                Self::Copied => {
+                    let at = places(&|it| chart.arcs.iter().filter(|other| other.from == it.from).count() > 1)?;
+                    let from = &chart.arcs[at].from;
+                    let other = (0..count).find(|it| *it != at && chart.arcs[*it].from == *from)?;
+                    chart.arcs[at].asked = chart.arcs[other].asked;
+                }
+                Self::Shared(other) => chart.arcs[place % count].asked = chart.arcs[other % count].asked,
+                Self::Unopened => {
+                    let at = places(&|it| it.to.len() > 1)?;
+                    chart.arcs[at].to.pop();
+                }
+                Self::Unjoined => {
+                    let at = places(&|it| it.from.len() > 1)?;
+                    chart.arcs[at].from.pop();
+                }
+                Self::Overjoined(step) => {
+                    let from = &mut chart.arcs[place % count].from;
+                    from.push(step % steps);
+                    from.sort_unstable();
+                    from.dedup();
+                }
+                Self::Unstarted => chart.without_start = true,
+            }
+            Some(())
+        }
+    }
+
+    /// What the rules about the structure of charts say.
+    fn found(text: &str) -> BTreeSet<&'static str> {
+        use crate::db::{self, Input};
+        use crate::lint::Settings;
+        use crate::source::detect::Dialect;
+        let outcome = db::check(vec![Input::from_text("a.sfc", text, Dialect::Sfc)], Settings::default());
+        let codes = outcome.diagnostics.iter().map(|it| it.finding.rule.code);
+        codes.filter(|it| ["G001", "G007", "G015", "G016", "G017", "G018"].contains(it)).collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        /// A slip of drawing is found, or the chart runs as well without it as any.
+        #[test]
+        fn slips_are_found(block in block(), slip in slip(), place in any::<usize>()) {
+            let mut chart = Writer::new(&block, None);
+            prop_assert_eq!(chart.is_faulty().unwrap_or(false), false);
+            prop_assume!(slip.make(&mut chart, place).is_some());
+            if let Some(is_faulty) = chart.is_faulty() {
+                let text = chart.text();
+                prop_assert_eq!(!found(&text).is_empty(), is_faulty, "{:?} {:?}\n{}", slip, found(&text), text);
+            }
         }
     }
 

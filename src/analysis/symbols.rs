@@ -9,13 +9,16 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::facts::{FactObject, UnitFacts};
-use crate::model::object::{Class, Object, Type, pl7};
+use crate::model::entity::Family;
+use crate::model::object::{Class, Object, Type, pl7, pl72};
 use crate::model::symbols::key;
 use crate::model::unit::Mode;
 
 /// The symbols of a program, by [`key`], and the symbols of addresses.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SymbolTable {
+    /// Whose addresses symbols name.
+    family: Family,
     addresses: FxHashMap<SmolStr, Meaning>,
     /// Symbol of an address in upper case.
     names: FxHashMap<SmolStr, SmolStr>,
@@ -29,12 +32,12 @@ enum Meaning {
 }
 
 impl SymbolTable {
-    pub fn new<'a>(units: impl IntoIterator<Item = &'a UnitFacts>) -> Self {
-        let mut table = Self::default();
+    pub fn new<'a>(family: Family, units: impl IntoIterator<Item = &'a UnitFacts>) -> Self {
+        let mut table = Self { family, addresses: FxHashMap::default(), names: FxHashMap::default() };
         for symbol in units.into_iter().flat_map(|it| &it.symbols) {
             let meaning = match &symbol.object {
                 Some(object) => {
-                    let address = SmolStr::from(object.text.to_ascii_uppercase());
+                    let address = table.spelling(&object.text);
                     table.names.entry(address.clone()).or_insert_with(|| symbol.name.clone());
                     Meaning::Address(address)
                 }
@@ -48,6 +51,13 @@ impl SymbolTable {
         table
     }
 
+    /// An address as the table has it. The percent sign is no part of those of PL7-2.
+    fn spelling(&self, address: &str) -> SmolStr {
+        let upper = SmolStr::from(address.to_ascii_uppercase());
+        let bare = upper.strip_prefix('%').filter(|_| self.family == Family::Pl72);
+        bare.map(SmolStr::from).unwrap_or(upper)
+    }
+
     pub fn is_empty(&self) -> bool {
         self.addresses.is_empty()
     }
@@ -55,7 +65,7 @@ impl SymbolTable {
     /// The address of a symbol. An item or bit that has no symbol of its own goes by that of its object: `Etat:X1`,
     /// `Tempo.Q`, a table by that of its first word (PL7:1234-1242).
     pub fn address(&self, symbol: &str) -> Option<SmolStr> {
-        let base = symbol.find(['.', ':']).unwrap_or(symbol.len());
+        let base = symbol.find(['.', ':', ',']).unwrap_or(symbol.len());
         let (name, rest) = symbol.split_at_checked(base)?;
         match self.addresses.get(&key(name))? {
             Meaning::Address(address) if rest.is_empty() => Some(address.clone()),
@@ -66,11 +76,11 @@ impl SymbolTable {
 
     /// The symbol of an address as written, in the form in which items of an object inherit it.
     pub fn symbol(&self, address: &str) -> Option<SmolStr> {
-        let address = address.to_ascii_uppercase();
+        let address = self.spelling(address);
         if let Some(name) = self.names.get(address.as_str()) {
             return Some(name.clone());
         }
-        let base = address.rfind([':', '.'])?;
+        let base = address.rfind([':', '.', ','])?;
         let (object, rest) = address.split_at_checked(base)?;
         let is_item = rest.starts_with(':') || rest.get(1..).is_some_and(|it| it.starts_with(char::is_alphabetic));
         let name = self.names.get(object).filter(|_| is_item)?;
@@ -91,7 +101,7 @@ impl SymbolTable {
             // The odd parts stand between two of the quotes, but for one behind an unpaired quote.
             let is_closed = at % 2 == 0 && at > 1;
             let Some(name) = parts.get(at.wrapping_sub(1)).filter(|_| is_closed) else { continue };
-            let other = if name.starts_with('%') { self.symbol(name) } else { self.address(name) };
+            let other = self.symbol(name).or_else(|| self.address(name));
             if let Some(other) = other.filter(|it| !message.contains(&format!("`{it}`")) && done.insert(name)) {
                 out.truncate(out.len() - part.len());
                 out.push_str(" (`");
@@ -109,7 +119,9 @@ impl SymbolTable {
             return None;
         }
         let text = object.text.as_str();
-        let resolved = if object.indexed {
+        let resolved = if self.family == Family::Pl72 {
+            pl72::parse(&self.address(text)?).map(|it| it.object)
+        } else if object.indexed {
             let (name, rest) = text.split_once('[')?;
             let suffix = rest.rsplit_once(']').map(|it| it.1).filter(|it| !it.is_empty());
             pl7::parse_indexed(&self.address(name)?, suffix)
@@ -201,7 +213,7 @@ mod tests {
     }
 
     fn table(text: &str) -> SymbolTable {
-        SymbolTable::new([&facts(text, Language::Exchange)])
+        SymbolTable::new(Family::Pl7, [&facts(text, Language::Exchange)])
     }
 
     const VARIABLES: &str = "VAR_GLOBAL\nPump AT %M0 : EBOOL; Etat AT %MW4 : WORD; Tempo AT %TM0 : TM;\n\
@@ -274,6 +286,25 @@ mod tests {
             assert_eq!(found.1, expected.1, "{}", found.0);
         }
         assert!(matches!(resolve(&table, &[&facts("! %M1 := %M2;", Language::Pl7St)])[0], Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn symbols_of_pl7_2() {
+        let variables = "VAR_GLOBAL\nDepart AT I0,05 : BOOL; Pompe AT %B3 : BOOL; Mot AT W10; Tempo AT T0;\nEND_VAR\n";
+        let table = SymbolTable::new(Family::Pl72, [&facts(variables, Language::Exchange)]);
+        assert_eq!(table.address("pompe").as_deref(), Some("B3"));
+        assert_eq!(table.symbol("T0,D").as_deref(), Some("Tempo,D"));
+        assert_eq!(table.symbol("i0,05").as_deref(), Some("Depart"));
+        assert_eq!(table.annotate("`B3` and `mot`"), "`B3` (`Pompe`) and `mot` (`W10`)");
+        let code = facts(
+            "RUNG L1:\nOPEN_CONTACT(Depart),H_LINK(8),COIL(Pompe);\nOPEN_CONTACT(Autre),H_LINK(8),COIL(B4);\nEND_RUNG\n",
+            Language::Pl72Ld,
+        );
+        let resolved = resolve(&table, &[&code]);
+        let shown: Vec<_> = resolved[0].objects.iter().map(|it| (it.object.text.as_str(), it.object.class)).collect();
+        let expected =
+            [("Depart", Class::Input), ("Autre", Class::Symbol), ("Pompe", Class::Memory), ("B4", Class::Memory)];
+        assert_eq!(shown, expected);
     }
 
     #[test]

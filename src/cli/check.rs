@@ -1,7 +1,7 @@
 //! `plclint check`: the main job.
 
 use std::fs;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -9,11 +9,13 @@ use std::time::Instant;
 use clap::ValueEnum;
 use rustc_hash::FxHashMap;
 
-use super::{Colour, Exit, Failure, dialect, print};
+use super::config::Configured;
+use super::read::{self, Group};
+use super::{Colour, Exit, Failure, print};
 use crate::db;
 use crate::lint::settings::Overrides;
-use crate::lint::{Diagnostic, Location, Outcome, Settings, Severity, SourceView};
-use crate::load::{self, Loader, Source};
+use crate::lint::{Diagnostic, Location, Outcome, Severity, SourceView};
+use crate::load::Loader;
 use crate::report::{self, Format, Options, Summary};
 use crate::source::detect::Dialect;
 
@@ -22,18 +24,8 @@ pub(super) struct Arguments {
     /// Files and folders to check, or `-` for standard input [default: the current folder]
     #[arg(value_name = "PATH")]
     paths: Vec<PathBuf>,
-    /// Name of what standard input holds, for messages and for its extension
-    #[arg(long, value_name = "FILE")]
-    stdin_filename: Option<String>,
-    /// What the files are, whatever they look like
-    #[arg(long, value_name = "DIALECT", default_value = "auto", value_parser = dialect())]
-    dialect: Dialect,
-    /// Controller that the programs are for: `TSX 37-22`, `CPU 314`
-    #[arg(long, value_name = "CONTROLLER")]
-    target: Option<String>,
-    /// Encoding of files without a byte order mark, whatever they look like: `windows-1252`, `cp850`
-    #[arg(long, value_name = "NAME")]
-    encoding: Option<String>,
+    #[command(flatten)]
+    reading: read::Reading,
     /// Number of threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -74,12 +66,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "RULE=LEVEL", help_heading = "Rules", value_parser = severity)]
     severity: Vec<(String, Severity)>,
 
-    /// Configuration file, instead of the nearest `plclint.toml` upwards from each path
-    #[arg(long, value_name = "FILE", help_heading = "Configuration", conflicts_with = "isolated")]
-    config: Option<PathBuf>,
-    /// Read no configuration file
-    #[arg(long, help_heading = "Configuration")]
-    isolated: bool,
+    #[command(flatten)]
+    configured: Configured,
 }
 
 fn severity(text: &str) -> Result<(String, Severity), String> {
@@ -112,25 +100,13 @@ fn output(text: &str) -> Result<Output, String> {
     Ok(Output { format: None, path: text.into() })
 }
 
-/// What to check: the paths that share their settings, and standard input.
-struct Group {
-    settings: Settings,
-    paths: Vec<PathBuf>,
-    stdin: Option<(String, Vec<u8>)>,
-}
-
 /// Reads and checks; each group is checked on its own.
 fn lint(groups: Vec<Group>, dialect: Dialect, threads: Option<NonZeroUsize>) -> Result<Outcome, Failure> {
     let start = Instant::now();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get)).build();
     let pool = pool.map_err(|it| Failure::Usage(format!("the threads do not start: {it}")))?;
     let check = |group: Group| {
-        let mut files = load::read(&group.paths, &group.settings, dialect);
-        if let Some((name, bytes)) = group.stdin {
-            let it = load::from_bytes(&name, &bytes, &group.settings, dialect);
-            files.inputs.extend(it.inputs);
-            files.unread.extend(it.unread);
-        }
+        let files = group.read(dialect);
         let mut outcome = db::check(files.inputs, group.settings);
         outcome.unread.extend(files.unread);
         outcome
@@ -171,8 +147,9 @@ fn merge(mut outcomes: Vec<Outcome>) -> Outcome {
                 continue;
             }
             let name = |location: Location| place(location.file).map(|it| Location { file: it.0, ..location });
-            let (entity, suppressed) = (it.entity, it.suppressed);
-            merged.diagnostics.extend(it.finding.map(name).map(|finding| Diagnostic { finding, entity, suppressed }));
+            let (entity, family, suppressed) = (it.entity, it.family, it.suppressed);
+            let finding = it.finding.map(name);
+            merged.diagnostics.extend(finding.map(|finding| Diagnostic { finding, entity, family, suppressed }));
         }
         merged.unread.extend(outcome.unread);
         merged.active.extend(outcome.active);
@@ -189,60 +166,20 @@ fn merge(mut outcomes: Vec<Outcome>) -> Outcome {
 }
 
 pub(super) fn run(mut arguments: Arguments, colour: Colour) -> Result<Exit, Failure> {
-    let source = match (&arguments.config, arguments.isolated) {
-        (Some(file), _) => Source::File(file.clone()),
-        (None, true) => Source::Isolated,
-        (None, false) => Source::Discover,
-    };
     let overrides = Overrides {
         select: arguments.select.take(),
         extend_select: std::mem::take(&mut arguments.extend_select),
         ignore: std::mem::take(&mut arguments.ignore),
         severity: std::mem::take(&mut arguments.severity),
-        controller: arguments.target.take(),
-        encoding: arguments.encoding.take(),
+        controller: arguments.reading.target.take(),
+        encoding: arguments.reading.encoding.take(),
     };
-    let mut loader = Loader::new(source, overrides)?;
-    let groups = groups(&arguments, &mut loader)?;
-    let outcome = lint(groups, arguments.dialect, arguments.threads)?;
+    let mut loader = Loader::new(arguments.configured.source(), overrides)?;
+    let groups = read::groups(&arguments.paths, arguments.reading.stdin_filename.as_deref(), &mut loader)?;
+    let outcome = lint(groups, arguments.reading.dialect, arguments.threads)?;
     let options = Options { colour: false, root: Some(loader.current().to_owned()) };
     report(&arguments, &outcome, &options, colour)?;
     Ok(exit(&outcome, arguments.exit_zero, arguments.max_warnings))
-}
-
-fn groups(arguments: &Arguments, loader: &mut Loader) -> Result<Vec<Group>, Failure> {
-    let is_stdin = |it: &PathBuf| it.as_os_str() == "-";
-    if arguments.paths.iter().any(is_stdin) {
-        if arguments.paths.len() > 1 {
-            return Err(Failure::Usage("standard input (`-`) is checked alone, without other paths".to_owned()));
-        }
-        let name = arguments.stdin_filename.clone().unwrap_or_else(|| "<stdin>".to_owned());
-        let settings = loader.settings(Path::new(&name))?;
-        let mut bytes = Vec::new();
-        io::stdin()
-            .lock()
-            .read_to_end(&mut bytes)
-            .map_err(|it| Failure::Usage(format!("standard input cannot be read: {it}")))?;
-        return Ok(vec![Group { settings, paths: Vec::new(), stdin: Some((name, bytes)) }]);
-    }
-    if arguments.stdin_filename.is_some() {
-        return Err(Failure::Usage("--stdin-filename names what `-` reads: give `-` as the path".to_owned()));
-    }
-    let current = [PathBuf::from(".")];
-    let paths = if arguments.paths.is_empty() { &current[..] } else { &arguments.paths };
-    let mut groups: Vec<Group> = Vec::new();
-    for path in paths {
-        // A name that is mistyped is wrong usage; a file that cannot be read is a line of the report.
-        if let Ok(false) = path.try_exists() {
-            return Err(Failure::Usage(format!("{}: there is no such file or folder", path.display())));
-        }
-        let settings = loader.settings(path)?;
-        match groups.iter_mut().find(|it| it.settings == settings) {
-            Some(group) => group.paths.push(path.clone()),
-            None => groups.push(Group { settings, paths: vec![path.clone()], stdin: None }),
-        }
-    }
-    Ok(groups)
 }
 
 fn report(arguments: &Arguments, outcome: &Outcome, options: &Options, colour: Colour) -> Result<(), Failure> {

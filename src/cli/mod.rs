@@ -10,6 +10,9 @@ use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 
 mod check;
 mod completions;
+mod config;
+mod draw;
+mod read;
 mod rule;
 mod rules;
 mod server;
@@ -36,6 +39,8 @@ struct Arguments {
 enum Command {
     /// Check programs and report what is wrong with them
     Check(Box<check::Arguments>),
+    /// Draw Grafcet charts, ladder networks and the graph of calls
+    Draw(Box<draw::Arguments>),
     /// Show the page of a rule
     Rule(rule::Arguments),
     /// List the rules
@@ -123,6 +128,7 @@ fn run() -> Exit {
     let colour = arguments.color;
     let result = match arguments.command {
         Command::Check(arguments) => check::run(*arguments, colour),
+        Command::Draw(arguments) => draw::run(&arguments),
         Command::Rule(arguments) => rule::run(&arguments, colour),
         Command::Rules(arguments) => rules::run(&arguments),
         Command::Tree(arguments) => tree::run(&arguments),

@@ -7,9 +7,10 @@ use rowan::TextRange;
 use super::settings::Settings;
 use super::suppress::Leftover;
 use crate::analysis::counts::{self, Numbered};
-use crate::analysis::program::ProgramIndex;
+use crate::analysis::program::{ObjectUses, ProgramIndex};
 use crate::analysis::reach::Study;
 use crate::model::UnitModel;
+use crate::model::object::{Class, Type};
 use crate::model::pl7_kinds::Kinds;
 use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
 use crate::target::Target;
@@ -146,6 +147,27 @@ impl<'a> ProgramCx<'a> {
     /// The charts of the program with what they reach, made once for all rules.
     pub fn studies(&self) -> &[Study<'a, 'a>] {
         self.studies.get_or_init(|| Study::all(self.program))
+    }
+
+    /// Outputs, memory bits and bits by symbol of which the program shows all: it is whole, and nothing but the bit's own uses
+    /// gives it a value (no index, no pointer, no word or table that covers it). A memory bit is among them when something
+    /// reads it. Of these, rules may say that a place is missing, if [`Hidden`](crate::analysis::drives::Hidden) does not hold it.
+    pub fn known_bits(&self) -> impl Iterator<Item = &ObjectUses<'a>> {
+        let objects = (0..).zip(&self.program.objects).filter(|_| self.program.complete);
+        objects.filter(|&(at, it)| self.is_known_bit(at, it)).map(|it| it.1)
+    }
+
+    fn is_known_bit(&self, at: u32, uses: &ObjectUses<'_>) -> bool {
+        let class = uses.object.class;
+        let is_bit = uses.object.ty == Type::Bool || class == Class::Symbol;
+        if !is_bit || !uses.object.is_fixed() || !matches!(class, Class::Output | Class::Memory | Class::Symbol) {
+            return false;
+        }
+        let mut neighbours = self.neighbours(at).iter().map(|&it| &self.program.objects[it as usize]);
+        let is_read = class != Class::Memory || uses.is_read() || neighbours.clone().any(ObjectUses::is_read);
+        is_read
+            && !self.program.writes_indirectly(&uses.object.footprint.area)
+            && !neighbours.any(ObjectUses::is_written)
     }
 
     /// See [`ProgramIndex::overlaps`].

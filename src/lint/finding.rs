@@ -115,6 +115,11 @@ impl<P> Finding<P> {
         }
     }
 
+    /// Whether a place of the finding is one of those asked for.
+    pub fn names(&self, wanted: impl Fn(&P) -> bool) -> bool {
+        wanted(&self.place) || self.related.iter().any(|it| wanted(&it.place))
+    }
+
     /// Names every place anew; `None` when the primary place is gone.
     pub fn map<Q>(self, mut name: impl FnMut(P) -> Option<Q>) -> Option<Finding<Q>> {
         let place = name(self.place)?;

@@ -24,6 +24,10 @@ pub struct SourceView {
     pub not_understood: usize,
     /// For a text that is not the file's own but made of its tables: lines and columns of it mean nothing to others.
     pub made_of: Option<MadeOf>,
+    /// Other files of its folder define parts that it defines too, so that it was checked by itself.
+    pub is_variant: bool,
+    /// The configuration, which is among the files when a finding names a place in it. It is no part of any program.
+    pub is_configuration: bool,
 }
 
 /// What the text of a binary file was made of.
@@ -39,6 +43,8 @@ pub struct Diagnostic {
     pub finding: Finding<Location>,
     /// The unit that holds the primary place, in the vendor's own addressing: `MAST - SR10`, `FC1`.
     pub entity: String,
+    /// Whose code holds it.
+    pub family: Option<Family>,
     /// Present when a comment or a baseline suppresses it; holds the reason given, which may be empty.
     pub suppressed: Option<String>,
 }

@@ -55,9 +55,20 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// The page's section `## What to do instead`, in one paragraph: the help of every finding.
+    /// The page's section `## What to do instead`, up to what it says of one family: what holds for all.
     pub fn help(&self) -> &'static str {
-        section(self.page, "What to do instead")
+        let help = section(self.page, "What to do instead");
+        help.find("### ").and_then(|it| help.get(..it)).unwrap_or(help).trim()
+    }
+
+    /// The help of a finding in code of a family: what the section says below `### STEP 7` or `### PL7, PL7-2`, when it names
+    /// the family, else what holds for all.
+    pub fn help_for(&self, family: Option<Family>) -> &'static str {
+        let parts = section(self.page, "What to do instead").split("### ").skip(1);
+        let own = parts.filter_map(|it| it.split_once('\n')).find(|(families, _)| {
+            family.is_some_and(|family| families.split(',').any(|it| it.trim() == family.as_str()))
+        });
+        own.map_or_else(|| self.help(), |it| it.1.trim())
     }
 
     /// The page below its title.
@@ -162,5 +173,27 @@ pub(crate) fn run<P>(rule: &'static Rule, findings: &mut Vec<Finding<P>>, check:
             finding.notes.push(format!("{} more places are not shown", finding.related.len() - MAX_RELATED));
             finding.related.truncate(MAX_RELATED);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn help_is_that_of_the_family() {
+        let rule = find("C003").unwrap();
+        let help = |family| rule.help_for(family);
+        assert!(help(Some(Family::Step7)).contains("`SE T 1`"), "{}", help(Some(Family::Step7)));
+        for family in [Family::Pl7, Family::Pl72] {
+            assert!(
+                !help(Some(family)).contains("`SE") && help(Some(family)).contains("T0,P") == (family == Family::Pl72),
+                "{}",
+                help(Some(family))
+            );
+        }
+        assert!(!rule.help().is_empty() && !rule.help().contains("###") && help(None) == rule.help());
+        let plain = find("W001").unwrap();
+        assert_eq!(plain.help_for(Some(Family::Pl7)), plain.help());
     }
 }

@@ -9,6 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use ignore::gitignore::{Gitignore, GitignoreBuilder};
+use rowan::TextRange;
 use serde::Deserialize;
 use smol_str::SmolStr;
 use toml::Spanned;
@@ -16,6 +17,7 @@ use toml::Spanned;
 use super::finding::Severity;
 use super::rule::{Rule, rules};
 use super::select::{Selection, Selector};
+use crate::analysis::Site;
 use crate::analysis::program::Context;
 use crate::model::entity::{Entity, Family, Part, Task};
 use crate::model::object::{self, Class, Object};
@@ -36,12 +38,52 @@ pub struct Settings(Arc<Inner>);
 
 struct Inner {
     folders: Folders,
+    source: ConfigSource,
     file: File,
     overrides: Overrides,
     base: Selection,
     per_file: Vec<PerFileRules>,
     entities: Vec<(Gitignore, usize)>,
     encoding: Option<Encoding>,
+}
+
+/// The file that settings were read from: findings may stand in it.
+#[derive(Debug, Clone, Default)]
+pub struct ConfigSource {
+    /// As reports show it, with forward slashes.
+    pub path: String,
+    pub text: Arc<str>,
+    /// Keys and values, by bytes of the text, sorted.
+    places: Box<[(u32, u32)]>,
+}
+
+impl ConfigSource {
+    fn new(text: &str, path: &Path) -> Self {
+        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
+        let mut places = Vec::new();
+        let mut open = Vec::new();
+        // What is no TOML has no settings.
+        let table = toml::de::DeTable::parse(text).map(Spanned::into_inner).unwrap_or_default();
+        let mut keep = |it: Range<usize>| places.push((number(it.start), number(it.end)));
+        let mut tables = vec![table];
+        while let Some(table) = tables.pop() {
+            for (key, value) in table {
+                keep(key.span());
+                open.push(value);
+                while let Some(value) = open.pop() {
+                    keep(value.span());
+                    match value.into_inner() {
+                        toml::de::DeValue::Array(items) => open.extend(items),
+                        toml::de::DeValue::Table(table) => tables.push(table),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        places.sort_unstable();
+        places.dedup();
+        Self { path: path.display().to_string().replace('\\', "/"), text: text.into(), places: places.into() }
+    }
 }
 
 struct PerFileRules {
@@ -55,6 +97,8 @@ impl PartialEq for Settings {
         Arc::ptr_eq(&self.0, &other.0)
             || (self.0.folders == other.0.folders
                 && self.0.file == other.0.file
+                // Places are no part of a value.
+                && (&self.0.source.path, &self.0.source.text) == (&other.0.source.path, &other.0.source.text)
                 && self.0.overrides == other.0.overrides
                 && self.0.base == other.0.base)
     }
@@ -75,6 +119,7 @@ impl Default for Settings {
         base.select(&[Selector::Default]);
         Self(Arc::new(Inner {
             folders: Folders::default(),
+            source: ConfigSource::default(),
             file,
             overrides: Overrides::default(),
             base,
@@ -141,11 +186,11 @@ struct TargetConfig {
 }
 
 /// How much of a chart the controller keeps at once.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ChartConfig {
-    pub active_steps: Option<u32>,
-    pub valid_transitions: Option<u32>,
+    pub active_steps: Option<Spanned<u32>>,
+    pub valid_transitions: Option<Spanned<u32>>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -171,12 +216,12 @@ pub struct TaskConfig {
     /// `MAST`, `FAST`.
     pub name: String,
     /// `20ms`.
-    pub period: Option<Milliseconds>,
+    pub period: Option<Spanned<Milliseconds>>,
     /// `250ms`.
-    pub watchdog: Option<Milliseconds>,
+    pub watchdog: Option<Spanned<Milliseconds>>,
     /// `%I3.8:8`.
     #[serde(default)]
-    pub io: Vec<Channels>,
+    pub io: Vec<Spanned<Channels>>,
 }
 
 impl TaskConfig {
@@ -233,9 +278,9 @@ impl TryFrom<String> for Channels {
 #[serde(deny_unknown_fields)]
 pub struct EventConfig {
     /// i of EVTi.
-    pub number: u16,
+    pub number: Spanned<u16>,
     /// `%I1.0`.
-    pub trigger: Option<Channels>,
+    pub trigger: Option<Spanned<Channels>>,
 }
 
 /// A section that runs under a condition.
@@ -243,7 +288,7 @@ pub struct EventConfig {
 #[serde(deny_unknown_fields)]
 struct SectionConfig {
     address: Spanned<SectionAddress>,
-    condition: ConditionBit,
+    condition: Spanned<ConditionBit>,
 }
 
 /// A section as headings name it: `MAST - Peinture`, `FAST - MAIN`.
@@ -516,7 +561,27 @@ impl Settings {
         for globs in [&file.files.include, &file.files.exclude] {
             globs.iter().try_for_each(|it| text.glob(it).map(drop))?;
         }
-        Ok(Self(Arc::new(Inner { folders, file, overrides, base, per_file, entities, encoding: forced })))
+        let source = ConfigSource::new(text.text, path);
+        Ok(Self(Arc::new(Inner { folders, source, file, overrides, base, per_file, entities, encoding: forced })))
+    }
+
+    /// The file that the settings are from; its text is empty when there is none.
+    pub fn source(&self) -> &ConfigSource {
+        &self.0.source
+    }
+
+    /// Where a key or value stands, for findings of rules that look at programs.
+    pub fn site<T>(&self, value: &Spanned<T>) -> Site {
+        let span = value.span();
+        let span = (u32::try_from(span.start).unwrap_or(u32::MAX), u32::try_from(span.end).unwrap_or(u32::MAX));
+        let at = self.0.source.places.binary_search(&span).unwrap_or_default();
+        Site::configured(u32::try_from(at).unwrap_or_default())
+    }
+
+    /// The range of such a place in [`ConfigSource::text`].
+    pub fn place(&self, site: Site) -> Option<TextRange> {
+        let &(start, end) = self.0.source.places.get(site.anchor as usize).filter(|_| site.is_configured())?;
+        Some(TextRange::new(start.into(), end.max(start).into()))
     }
 
     /// Which rules are on for a file.
@@ -577,24 +642,24 @@ impl Settings {
         Some(version.get_ref().as_str())
     }
 
-    /// Whether the input `I0,00` of a TSX 17-20 commands it to run and to stop.
-    pub fn run_stop_input(&self) -> bool {
-        self.of_own_controller(self.0.file.target.run_stop_input.as_ref()).unwrap_or_default()
+    /// Where it is said that the input `I0,00` of a TSX 17-20 commands it to run and to stop.
+    pub fn run_stop_input(&self) -> Option<&Spanned<bool>> {
+        self.of_own_controller(self.0.file.target.run_stop_input.as_ref()).filter(|it| *it.get_ref())
     }
 
-    /// Whether the output `O0,00` of a TSX 17-20 tells that it runs.
-    pub fn security_output(&self) -> bool {
-        self.of_own_controller(self.0.file.target.security_output.as_ref()).unwrap_or_default()
+    /// Where it is said that the output `O0,00` of a TSX 17-20 tells that it runs.
+    pub fn security_output(&self) -> Option<&Spanned<bool>> {
+        self.of_own_controller(self.0.file.target.security_output.as_ref()).filter(|it| *it.get_ref())
     }
 
     /// Bytes of memory that a PL7-2 program may take.
-    pub fn program_memory(&self) -> Option<u32> {
+    pub fn program_memory(&self) -> Option<&Spanned<u32>> {
         self.of_own_controller(self.0.file.target.program_memory.as_ref())
     }
 
     /// What the file says of its controller; none when the command line names another one.
-    fn of_own_controller<T: Copy>(&self, value: Option<&Spanned<T>>) -> Option<T> {
-        value.filter(|_| !self.is_another_controller()).map(|it| *it.get_ref())
+    fn of_own_controller<'a, T>(&self, value: Option<&'a Spanned<T>>) -> Option<&'a Spanned<T>> {
+        value.filter(|_| !self.is_another_controller())
     }
 
     /// Configured number of objects of a family, by its mnemonic: `M`, `MW`; none when the command line names another
@@ -608,7 +673,7 @@ impl Settings {
 
     /// What the application configures of its charts; nothing when the command line names another controller than the file.
     pub fn chart(&self) -> ChartConfig {
-        if self.is_another_controller() { ChartConfig::default() } else { self.0.file.chart }
+        if self.is_another_controller() { ChartConfig::default() } else { self.0.file.chart.clone() }
     }
 
     /// What programs of a family are checked for: the configured controller with the configured counts, when it is one of
@@ -643,7 +708,7 @@ impl Settings {
         for task in self.tasks() {
             let Some(context) = task.context() else { continue };
             fast_is_listed |= context == Context::Fast && !task.io.is_empty();
-            if task.io.iter().any(|it| it.0.footprint.overlaps(&object.footprint)) {
+            if task.io.iter().any(|it| it.get_ref().0.footprint.overlaps(&object.footprint)) {
                 return Some(context);
             }
         }
@@ -652,8 +717,16 @@ impl Settings {
 
     /// The condition under which the section runs that a unit belongs to, as the configuration says.
     pub fn condition_of(&self, entity: &Entity) -> Option<&Object> {
-        let section = self.0.file.section.iter().find(|it| it.address.get_ref().holds(entity))?;
-        Some(&section.condition.0)
+        Some(&self.condition(entity)?.get_ref().0)
+    }
+
+    /// Where the configuration says so.
+    pub fn condition_site(&self, entity: &Entity) -> Option<Site> {
+        self.condition(entity).map(|it| self.site(it))
+    }
+
+    fn condition(&self, entity: &Entity) -> Option<&Spanned<ConditionBit>> {
+        self.0.file.section.iter().find(|it| it.address.get_ref().holds(entity)).map(|it| &it.condition)
     }
 
     /// Whether the configuration says which modules there are.
@@ -661,15 +734,25 @@ impl Settings {
         !self.0.file.module.is_empty()
     }
 
-    /// Discrete output channels of the module at a position; `None` when none is configured there.
-    pub fn output_channels(&self, position: u32) -> Option<u32> {
+    /// Discrete output channels of the module at a position, and where it is configured; `None` when none is.
+    pub fn output_channels(&self, position: u32) -> Option<(u32, Site)> {
         let mut modules = self.0.file.module.iter();
-        Some(modules.find(|it| *it.position.get_ref() == position)?.outputs.0)
+        let module = modules.find(|it| *it.position.get_ref() == position)?;
+        Some((module.outputs.0, self.site(&module.position)))
     }
 
     /// The input whose channel raises an event, as the configuration says.
     pub fn trigger_of(&self, event: u16) -> Option<&Object> {
-        self.events().iter().find(|it| it.number == event)?.trigger.as_ref().map(|it| &it.0)
+        self.trigger(event).map(|it| &it.get_ref().0)
+    }
+
+    /// Where the configuration says so.
+    pub fn trigger_site(&self, event: u16) -> Option<Site> {
+        self.trigger(event).map(|it| self.site(it))
+    }
+
+    fn trigger(&self, event: u16) -> Option<&Spanned<Channels>> {
+        self.events().iter().find(|it| *it.number.get_ref() == event)?.trigger.as_ref()
     }
 
     pub fn scope(&self) -> ProgramScope {
@@ -941,9 +1024,15 @@ mod tests {
         assert_eq!(settings.encoding(), Some(Encoding::Windows1252));
         assert_eq!(settings.entity_address("sub/poste1.st"), Some("MAST SR3"));
         assert_eq!(settings.entity_address("poste2.st"), None);
-        assert_eq!(settings.tasks()[0].io[0].0.text, "%I3.8:8");
-        assert_eq!(settings.tasks()[0].period, Some(Milliseconds(20)));
-        assert_eq!(settings.events()[0].trigger.as_ref().map(|it| it.0.text.as_str()), Some("%I1.0"));
+        assert_eq!(settings.tasks()[0].io[0].get_ref().0.text, "%I3.8:8");
+        let period = settings.tasks()[0].period.as_ref().unwrap();
+        assert_eq!(*period.get_ref(), Milliseconds(20));
+        let place = settings.place(settings.site(period)).unwrap();
+        assert_eq!(&settings.source().text[place], "\"20ms\"");
+        let place = settings.place(settings.site(&settings.tasks()[0].io[0])).unwrap();
+        assert_eq!(&settings.source().text[place], "\"%I3.8:8\"");
+        assert_eq!(settings.source().path, FILE_NAME);
+        assert_eq!(settings.events()[0].trigger.as_ref().map(|it| it.get_ref().0.text.as_str()), Some("%I1.0"));
         let condition =
             |address| settings.condition_of(&entity_from_address(address).unwrap()).map(|it| it.text.as_str());
         for address in ["MAST - PUMP", "MAST - Pump - PRL", "MAST - Pump - CHART - PAGE 0 %X1 P1"] {
@@ -952,7 +1041,7 @@ mod tests {
         for address in ["MAST - MAIN", "FAST - Pump", "MAST - SR1", "EVT1"] {
             assert_eq!(condition(address), None, "{address}");
         }
-        assert_eq!((settings.output_channels(4), settings.output_channels(5)), (Some(8), None));
+        assert_eq!((settings.output_channels(4).map(|it| it.0), settings.output_channels(5)), (Some(8), None));
         assert_eq!(settings.scope(), ProgramScope::Folder);
         assert_eq!(on(&settings, "a.st"), ["J005", "W001"]);
         assert_eq!(on(&settings, "../legacy/deep/a.st"), ["J005"]);
@@ -982,14 +1071,14 @@ mod tests {
         let text = "[target]\ncontroller = 'TSX 17-20'\nrun-stop-input = true\nprogram-memory = 24576\n[[task]]\n\
                     name = 'FAST'\nio = ['I0,00[8]', 'O0,08[8]', 'O0,00']";
         let settings = parse(text).unwrap();
-        assert_eq!((settings.run_stop_input(), settings.security_output()), (true, false));
-        assert_eq!(settings.program_memory(), Some(24_576));
+        assert!(settings.run_stop_input().is_some() && settings.security_output().is_none());
+        assert_eq!(settings.program_memory().map(|it| *it.get_ref()), Some(24_576));
         let output = |text: &str| object::pl72::parse(text).unwrap().object;
         assert_eq!(settings.task_of(&output("O0,15")), Some(Context::Fast));
         assert_eq!(settings.task_of(&output("O0,07")), Some(Context::Cyclic));
         let other = Overrides { controller: Some("TSX 27".into()), ..Overrides::default() };
         let settings = parse_with(text, other).unwrap();
-        assert_eq!((settings.run_stop_input(), settings.program_memory()), (false, None));
+        assert!(settings.run_stop_input().is_none() && settings.program_memory().is_none());
     }
 
     #[test]

@@ -152,9 +152,22 @@ pub struct Transition {
     pub receptivity: Receptivity,
     /// Of the receptivity, where it says one.
     pub language: Option<CodeLanguage>,
+    /// Where another condition can be asked as well.
+    pub room: Option<Room>,
     /// Place of the keyword.
     pub range: TextRange,
     pub anchor: u32,
+}
+
+/// Where a receptivity can be made to ask another condition as well, by anchors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Room {
+    /// Before and behind the expression of structured text. `binds`: an `AND` behind it takes in the whole of it.
+    Expression { before: u32, behind: u32, binds: bool },
+    /// Behind the last test of a list.
+    List { behind: u32 },
+    /// A horizontal link of so many cells, through which all power of the rung goes to its end.
+    Link { at: u32, cells: u32 },
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]

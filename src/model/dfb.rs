@@ -68,11 +68,6 @@ impl Role {
     pub fn is_written(self) -> bool {
         matches!(self, Self::InOut | Self::Output)
     }
-
-    /// Whether a call gives the item an actual.
-    pub fn is_parameter(self) -> bool {
-        matches!(self, Self::Input | Self::InOut | Self::Output)
-    }
 }
 
 /// Type of an item (PL7:5376-5391).

@@ -269,6 +269,20 @@ impl Exprs {
         Some(Guard { nodes: ids.iter().map(node).collect() })
     }
 
+    /// Whether a condition is made of at most so many expressions, those that it has several times counted as often.
+    pub fn is_within(&self, condition: ExprId, most: usize) -> bool {
+        let mut stack = vec![condition];
+        let mut count = 0;
+        while let Some(id) = stack.pop() {
+            count += 1;
+            if count > most {
+                return false;
+            }
+            self.get(id).operands(|it| stack.push(it));
+        }
+        true
+    }
+
     /// Every expression that a condition is made of, itself too, each once.
     fn each_part(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
         let mut seen = FxHashSet::default();

@@ -230,6 +230,8 @@ pub struct Grid<'t> {
     pub placed: Vec<Placed<'t>>,
     /// Cells of each row. Of a number beyond all limits, as many as show that it is.
     pub rows: Vec<Row<'t>>,
+    /// Vertical links: each leads from a row to the one below, at the left edge of a column; both from 0.
+    pub vertical: Vec<(u32, u32)>,
     wires: Vec<Junction>,
     open_links: Vec<TextRange>,
 }
@@ -272,11 +274,20 @@ struct Rows {
 
 impl<'t> Grid<'t> {
     pub fn new(rung: Rung<'t>, layout: Layout) -> Self {
-        let mut grid = Self { layout, placed: Vec::new(), rows: Vec::new(), wires: Vec::new(), open_links: Vec::new() };
+        let mut grid = Self {
+            layout,
+            placed: Vec::new(),
+            rows: Vec::new(),
+            vertical: Vec::new(),
+            wires: Vec::new(),
+            open_links: Vec::new(),
+        };
         let mut rows = Rows::default();
         for row in rung.rows() {
             grid.read_row(row, &mut rows);
         }
+        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
+        grid.vertical = rows.links.iter().map(|it| (number(it.0), number(it.1))).collect();
         grid.wire(&rows);
         grid
     }
@@ -477,6 +488,26 @@ impl<'t> Grid<'t> {
     /// Whether some element stands at the right of a wire.
     pub fn is_used(&self, wire: Wire) -> bool {
         !self.wires[wire.0 as usize].right.is_empty()
+    }
+
+    /// The horizontal link through which all power goes to the `(#)` of a transition, and to nothing else: its place, and how
+    /// many cells it has.
+    pub fn link_before_end(&self) -> Option<(TextRange, u32)> {
+        let mut ends = self.placed.iter().filter(|it| it.element == Some(Element::HashCoil));
+        let end = ends.next().filter(|_| ends.next().is_none())?;
+        let link = |wire: Wire| match self.wires[wire.0 as usize] {
+            Junction { ref left, ref right, .. } if wire != Wire::RAIL && left.len() == 1 && right.len() == 1 => {
+                self.left_of(wire).next().filter(|it| it.element == Some(Element::HLink))
+            }
+            _ => None,
+        };
+        let last = link(*end.inputs.first()?)?;
+        let (place, mut cells, mut at) = (last.range(), last.width, last);
+        while let Some(before) = at.inputs.first().and_then(|it| link(*it)).filter(|it| it.range() == place) {
+            (cells, at) = (cells + before.width, before);
+        }
+        let all: u32 = self.placed.iter().filter(|it| it.range() == place).map(|it| it.width).sum();
+        (cells == all).then_some((place, cells))
     }
 
     /// What the input of a DFB at the right end of a wire is given.

@@ -207,9 +207,10 @@ pub enum StatementKind {
         when: ExprId,
         how: Leave,
     },
-    /// The program goes one of two ways: an `IF`, a loop.
+    /// The program goes one of two ways.
     Branch {
         condition: ExprId,
+        of: Fork,
     },
     Halt,
     /// Leaves the innermost loop.
@@ -218,6 +219,17 @@ pub enum StatementKind {
     Open,
     /// Anything else that acts: a conversion in place, a master control relay.
     Other,
+}
+
+/// Where a program goes one of two ways.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Fork {
+    /// `IF`; `ELSIF`, with the statement that is the arm before.
+    Arm { after: Option<u32> },
+    /// `WHILE`, `REPEAT`.
+    Loop,
+    /// A transition.
+    Receptivity,
 }
 
 /// What an instruction leaves.
@@ -374,7 +386,7 @@ pub struct Loop {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Index {
     pub what: IndexKind,
-    pub range: TextRange,
+    pub anchor: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

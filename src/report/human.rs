@@ -211,7 +211,7 @@ fn render(
             );
         }
     }
-    let help = first_paragraph(finding.rule.help());
+    let help = first_paragraph(finding.rule.help_for(diagnostic.family));
     if !help.is_empty() {
         report.add_help(help);
     }
@@ -259,7 +259,7 @@ fn render_entry(
         writeln!(out, "   │ {}  ({})", shown(&related.place), visible(&related.message))?;
     }
     writeln!(out, "   │")?;
-    let help = first_paragraph(finding.rule.help());
+    let help = first_paragraph(finding.rule.help_for(diagnostic.family));
     for (title, text) in [("Help", help), ("Note", notes(diagnostic))] {
         for (number, line) in text.lines().enumerate() {
             let title = if number == 0 { format!("{title}: ") } else { " ".repeat(title.len() + 2) };

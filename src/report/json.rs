@@ -104,6 +104,8 @@ struct FileView<'a> {
     entities: usize,
     bytes: usize,
     bytes_not_understood: usize,
+    /// Another file of the folder defines parts that it defines too.
+    variant: bool,
 }
 
 #[derive(Serialize)]
@@ -147,6 +149,7 @@ pub(super) fn write(outcome: &Outcome, out: &mut dyn io::Write) -> io::Result<()
                 entities: it.entities,
                 bytes: it.text.len(),
                 bytes_not_understood: it.not_understood,
+                variant: it.is_variant,
             })
             .collect(),
         unread: outcome
@@ -218,7 +221,7 @@ fn finding<'a>(positions: &Positions<'a>, diagnostic: &'a Diagnostic) -> Option<
         label: finding.label.as_deref(),
         related: finding.related.iter().filter_map(related).collect(),
         notes: &finding.notes,
-        help: finding.rule.help(),
+        help: finding.rule.help_for(diagnostic.family),
         sources: finding.rule.sources,
         fixes,
         suppressed: diagnostic.suppressed.as_deref().map(|reason| Suppressed { reason }),

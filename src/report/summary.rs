@@ -35,6 +35,8 @@ pub struct Summary {
     pub internal_errors: usize,
     /// PL7 projects, of which the tables are read and the code is not, and those among them without a cross-reference.
     pub projects: usize,
+    /// Files that were checked one by one, because they define the same parts as others of their folder.
+    pub variants: usize,
     pub without_reference: usize,
     /// Families that were checked for no controller in particular, though some rule would find more for one.
     pub untargeted: Vec<Family>,
@@ -47,9 +49,10 @@ impl Summary {
             untargeted: outcome.untargeted.clone(),
             ..Self::default()
         };
-        for file in &outcome.files {
+        for file in outcome.files.iter().filter(|it| !it.is_configuration) {
             it.files += 1;
             it.entities += file.entities;
+            it.variants += usize::from(file.is_variant);
             if let Some(made_of) = file.made_of {
                 it.projects += 1;
                 it.without_reference += usize::from(!made_of.cross_reference);
@@ -129,6 +132,13 @@ impl Summary {
             if self.without_reference > 0 {
                 put(&mut out, format_args!(" (not available in {})", grouped(self.without_reference)));
             }
+        }
+        if self.variants > 0 {
+            let files = count(self.variants, "file defines", "files define");
+            put(
+                &mut out,
+                format_args!("; {files} what others of the folder define too, and each was checked by itself"),
+            );
         }
         if !self.untargeted.is_empty() {
             let families: Vec<&str> = self.untargeted.iter().map(|it| it.as_str()).collect();
@@ -214,6 +224,15 @@ mod tests {
         );
         assert!(summary(&[Family::Pl7]).contains(" for PL7: "));
         assert!(!summary(&[]).contains("controller"));
+    }
+
+    #[test]
+    fn it_says_what_was_not_put_together() {
+        let line = |variants| Summary { variants, ..Summary::default() }.line(None);
+        assert!(
+            line(2).ends_with("; 2 files define what others of the folder define too, and each was checked by itself")
+        );
+        assert!(!line(0).contains("by itself"));
     }
 
     #[test]

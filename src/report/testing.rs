@@ -10,6 +10,7 @@ use crate::lint::{
     Applicability, Diagnostic, Edit, Finding, Fix, Location, Outcome, Related, Rule, Severity, SourceView, Unread,
     UnreadReason,
 };
+use crate::model::entity::Family;
 
 pub(crate) fn empty() -> Outcome {
     Outcome::default()
@@ -28,6 +29,8 @@ pub(crate) fn view(path: &str, text: &str, encoding: &'static str) -> SourceView
         entities: 2,
         not_understood: 0,
         made_of: None,
+        is_variant: false,
+        is_configuration: false,
     }
 }
 
@@ -39,7 +42,7 @@ pub(crate) fn place(files: &[SourceView], file: u32, word: &str, nth: usize) -> 
 }
 
 pub(crate) fn diagnostic(finding: Finding<Location>) -> Diagnostic {
-    Diagnostic { finding, entity: "FC1".into(), suppressed: None }
+    Diagnostic { finding, entity: "FC1".into(), family: Some(Family::Step7), suppressed: None }
 }
 
 /// Two files with umlauts, findings of every severity, a fix, a suppression and files left out.

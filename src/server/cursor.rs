@@ -127,10 +127,16 @@ impl<'s> InUnit<'s> {
 
     /// The program of the unit and the number of the unit in it.
     pub(super) fn program(&self) -> Option<(Program<'s>, u32)> {
-        let program = (*db::program_of(self.it.db, self.it.file))?;
-        let at = db::program_units(self.it.db, program).iter().position(|it| *it == self.unit)?;
-        Some((program, u32::try_from(at).ok()?))
+        program_with(self.it, self.unit)
     }
+}
+
+/// The program that a unit of the file belongs to, and its number there.
+pub(super) fn program_with<'s>(it: InFile<'s>, unit: Unit<'s>) -> Option<(Program<'s>, u32)> {
+    db::programs_of(it.db, it.file).iter().find_map(|&program| {
+        let at = db::program_units(it.db, program).iter().position(|it| *it == unit)?;
+        Some((program, u32::try_from(at).ok()?))
+    })
 }
 
 /// A program with its facts, which an index borrows from.
@@ -142,7 +148,7 @@ pub(super) struct InProgram<'s> {
 
 impl<'s> InProgram<'s> {
     pub(super) fn new(it: InFile<'s>, program: Program<'s>) -> Self {
-        Self { it, program, facts: db::resolved_facts(it.db, program) }
+        Self { it, program, facts: db::program_facts(it.db, program) }
     }
 
     pub(super) fn index(&self) -> ProgramIndex<'_> {

@@ -63,6 +63,12 @@ enum Event {
         path: String,
         found: Arc<FileDiagnostics>,
     },
+    /// Findings in the configuration of a root.
+    Configured {
+        revision: u64,
+        root: u32,
+        items: Vec<Diagnostic>,
+    },
     Progress {
         token: String,
         percentage: u32,
@@ -113,6 +119,10 @@ struct Server {
     known: Arc<Known>,
     /// Diagnostics told in configurations.
     configs: FxHashMap<PathBuf, Vec<Diagnostic>>,
+    /// Findings in the configurations of roots.
+    configured: FxHashMap<u32, Vec<Diagnostic>>,
+    /// Configurations that cannot be used, as the user was told.
+    wrong: FxHashSet<PathBuf>,
     /// Requests without answer. What is set to true needs none.
     pending: FxHashMap<RequestId, Arc<AtomicBool>>,
     /// Requests that wait until the folders are read.
@@ -142,6 +152,8 @@ impl Server {
             documents: Arc::default(),
             known: Arc::default(),
             configs: FxHashMap::default(),
+            configured: FxHashMap::default(),
+            wrong: FxHashSet::default(),
             pending: FxHashMap::default(),
             deferred: Vec::new(),
             suspended: Vec::new(),
@@ -204,6 +216,12 @@ impl Server {
             Event::Found { revision, path, found } => {
                 if revision == self.revision {
                     self.publish(path, found);
+                }
+            }
+            Event::Configured { revision, root, items } => {
+                if revision == self.revision {
+                    self.configured.insert(root, items);
+                    self.tell_configs();
                 }
             }
             Event::Progress { token, percentage } => {
@@ -624,12 +642,20 @@ impl Server {
             };
             wrong.entry(file).or_insert_with(|| vec![diagnostics::of_config(it, &text, self.abilities.encoding)]);
         }
+        for file in wrong.keys().filter(|it| !self.wrong.contains(*it)) {
+            self.client.show_error(format!("{}: the configuration is wrong and not used", file.display()));
+        }
+        self.wrong = wrong.keys().cloned().collect();
+        for root in &self.roots {
+            if let (Some(file), Some(found)) = (&root.config, self.configured.get(&root.id))
+                && !found.is_empty()
+            {
+                wrong.entry(file.clone()).or_insert_with(|| found.clone());
+            }
+        }
         for (file, found) in &wrong {
             if self.configs.get(file) != Some(found) {
                 self.publish_config(file, found.clone());
-                if !self.configs.contains_key(file) {
-                    self.client.show_error(format!("{}: the configuration is wrong and not used", file.display()));
-                }
             }
         }
         for file in self.configs.keys().filter(|it| !wrong.contains_key(*it)) {
@@ -665,9 +691,6 @@ impl Server {
         std::mem::take(&mut self.suspended).into_iter().for_each(|it| self.dispatch(it));
         let cold = std::mem::take(&mut self.cold);
         let (pushes, revision) = (!self.abilities.pulls, self.revision);
-        if !pushes && cold.is_empty() {
-            return;
-        }
         let (snapshot, events) = (self.snapshot(), self.events.clone());
         let first: Vec<String> = self.recent.iter().rev().cloned().collect();
         self.workers.run(move || {
@@ -676,6 +699,11 @@ impl Server {
                     if let Some((_, token)) = cold.iter().find(|it| it.0 == root.id) {
                         warm(root, token.as_deref(), &events);
                     }
+                }
+                for root in snapshot.roots.iter().filter(|it| it.config.is_some()) {
+                    let found = db::configuration_findings(&root.db);
+                    let items = found.iter().map(|it| diagnostics::diagnostic(&snapshot, root, None, it)).collect();
+                    let _ = events.send(Event::Configured { revision, root: root.id, items });
                 }
                 if pushes {
                     push(&snapshot, &first, |path, found| {

@@ -12,7 +12,8 @@ use super::client::Abilities;
 use super::convert::{self, Encoding};
 use super::diagnostics::{FileDiagnostics, Known};
 use super::document::Documents;
-use crate::db::{self, FilePlace, RootDatabase, SourceFile};
+use crate::db::{self, Db as _, FilePlace, RootDatabase, SourceFile};
+use crate::load;
 
 pub(super) struct Snapshot {
     pub(super) roots: Vec<RootSnapshot>,
@@ -68,7 +69,12 @@ impl RootSnapshot {
     }
 
     pub(super) fn location(&self, snapshot: &Snapshot, place: FilePlace) -> Option<Location> {
-        let uri = snapshot.uri(place.file.path(&self.db))?;
+        let is_config = place.file == self.db.project().configuration(&self.db);
+        let uri = match &self.config {
+            // Its path is as messages show it.
+            Some(config) if is_config => snapshot.uri(&load::shown(config))?,
+            _ => snapshot.uri(place.file.path(&self.db))?,
+        };
         Some(Location { uri, range: self.range(place, snapshot.encoding()) })
     }
 }

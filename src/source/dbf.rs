@@ -88,35 +88,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-
-    /// Builds a table: names and widths of fields, then records.
-    fn table(fields: &[(&str, u8)], rows: &[&[&str]]) -> Vec<u8> {
-        let record = 1 + fields.iter().map(|it| u16::from(it.1)).sum::<u16>();
-        let header = 32 + 32 * fields.len() as u16 + 1;
-        let mut out = vec![3, 116, 1, 1];
-        out.extend((rows.len() as u32).to_le_bytes());
-        out.extend(header.to_le_bytes());
-        out.extend(record.to_le_bytes());
-        out.resize(32, 0);
-        for (name, width) in fields {
-            let mut field = [0; 32];
-            field[..name.len()].copy_from_slice(name.as_bytes());
-            field[11] = b'C';
-            field[16] = *width;
-            out.extend(field);
-        }
-        out.push(END_OF_FIELDS);
-        for row in rows {
-            out.push(b' ');
-            for (value, (_, width)) in row.iter().zip(fields) {
-                let mut cell = value.as_bytes().to_vec();
-                cell.resize(usize::from(*width), b' ');
-                out.extend(cell);
-            }
-        }
-        out.push(0x1A);
-        out
-    }
+    use crate::source::testing::table;
 
     #[test]
     fn records_and_their_fields() {

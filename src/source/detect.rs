@@ -138,7 +138,6 @@ pub struct FileHint<'p> {
 /// Names of the forms that are recognised and not read.
 pub mod unsupported {
     pub const OTHER_LANGUAGE: &str = "PL7 language other than IL, ST, LD and GR7";
-    pub const PL7_2: &str = "PL7-2 code in a file with PL7 code";
     pub const PL7_2_LANGUAGE: &str = "PL7-2 language other than ladder and Grafcet";
     pub const DFB: &str = "PL7 DFB type";
     pub const VARIABLES: &str = "PL7 variables (SCY)";
@@ -336,6 +335,16 @@ pub(super) fn pl7_text(text: &str) -> Pl7Text {
     Tally::of(text).pl7_text(Extension::Other)
 }
 
+/// Whose operands ladder and charts have, by most of the lines that say so; `None` if none does.
+pub(super) fn operands_of(text: &str) -> Option<Family> {
+    let mut tally = Tally::default();
+    for line in Lines::new(text, Comments::Pl7) {
+        tally.add_operands(line.code);
+    }
+    let is_told = tally.pl7_2 + tally.not_pl7_2 > 0;
+    is_told.then(|| if tally.is_pl7_2(None) { Family::Pl72 } else { Family::Pl7 })
+}
+
 fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) -> Detected {
     // Forms that the content proves, whatever the file is called.
     let of_pl7 = matches!(
@@ -383,8 +392,8 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         // A sentence or an expression alone: nothing but what has addresses or marks of PL7.
         Extension::Il | Extension::St if tally.pl7 == tally.lines => Detected::Pasted(tally.pl7_text(extension)),
         Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
-        Extension::Gr7 if tally.chart > 0 || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
-        Extension::Sfc if tally.chart > 0 => Detected::Pasted(Pl7Text::Sfc),
+        Extension::Gr7 if tally.has_chart() || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
+        Extension::Sfc if tally.has_chart() => Detected::Pasted(Pl7Text::Sfc),
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
         Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
@@ -401,7 +410,16 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
 fn is_variable(line: &str) -> bool {
     let (name, rest) = word(line);
     let rest = rest.trim_start();
-    !name.is_empty() && (rest.starts_with("AT %") || rest.starts_with("at %") || rest.starts_with(':'))
+    let address = strip_prefix_ignore_case(rest, "AT ").map(str::trim_start);
+    !name.is_empty()
+        && (rest.starts_with(':') || address.is_some_and(|it| it.starts_with('%') || declared_by_pl7_2(it)))
+}
+
+/// Whether a declaration, behind its `AT`, has an address that PL7-2 alone has: `B3`, `I0,05`.
+fn declared_by_pl7_2(address: &str) -> bool {
+    let end = address.find(|it: char| it.is_whitespace() || matches!(it, ':' | ';' | '(')).unwrap_or(address.len());
+    let address = address.get(..end.min(LONGEST_PL7_2)).unwrap_or_default();
+    !address.starts_with('%') && object::pl72::class_of(address).is_some_and(|it| it != object::Class::Fault)
 }
 
 /// How much of a text is looked at.
@@ -461,6 +479,8 @@ struct Tally {
     pages: u32,
     /// Lines of charts that start with a word which other texts have too.
     chart_words: u32,
+    /// Those among them that begin a step.
+    steps: u32,
     /// Words of S7-GRAPH.
     graph: u32,
     step5: u32,
@@ -525,8 +545,7 @@ impl Tally {
         let first = word(code).0.to_ascii_uppercase();
         let first = first.as_str();
         self.pl7 += u32::from(is_pl7);
-        self.pl7_2 += u32::from(has_pl7_2_object(line));
-        self.not_pl7_2 += u32::from(is_pl7 && has_object_of_pl7_alone(line));
+        self.add_operands(line);
         self.dfb += u32::from(is_dfb_line(code, first));
         self.variables += u32::from(is_variable(code));
         match pl7_statement(code, first, is_pl7) {
@@ -551,6 +570,7 @@ impl Tally {
             "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" => self.chart += 1,
             "STEP" | "TRANSITION" | "ACTION" | "END_ACTION" | "PAGE" if is_chart_line(code, first) => {
                 self.chart_words += 1;
+                self.steps += u32::from(first == "STEP");
             }
             "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
             "VAR_GLOBAL" | "PROGRAM" | "END_PROGRAM" | "CONFIGURATION" | "VAR_EXTERNAL" => self.iec += 1,
@@ -574,6 +594,11 @@ impl Tally {
         }
     }
 
+    fn add_operands(&mut self, line: &str) {
+        self.pl7_2 += u32::from(has_pl7_2_object(line));
+        self.not_pl7_2 += u32::from(has_pl7_object(line) && has_object_of_pl7_alone(line));
+    }
+
     /// Whether ladder and charts are PL7-2's: most of their operands say so, or where they say nothing, the configuration.
     fn is_pl7_2(&self, configured: Option<Family>) -> bool {
         self.pl7_2 > self.not_pl7_2 || self.not_pl7_2 == 0 && configured == Some(Family::Pl72)
@@ -581,6 +606,11 @@ impl Tally {
 
     fn is_exchange(&self) -> bool {
         self.own_blocks > 0 || self.blocks > 1
+    }
+
+    /// Whether steps or pages are there. A step may begin and end on one line.
+    fn has_chart(&self) -> bool {
+        self.chart + self.steps > 0
     }
 
     fn headings(&self) -> u32 {
@@ -642,7 +672,7 @@ impl Tally {
         }
         let structure = if self.st > 0 { self.scl } else { 0 };
         let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
-        let is_chart = self.chart > 0 && self.chart + self.chart_words > 2 && self.graph == 0;
+        let is_chart = self.has_chart() && self.chart + self.chart_words > 2 && self.graph == 0;
         if is_chart && charted && (self.pages > 1 || self.pl7 + self.pl7_2 > 0 && self.iec == 0) {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
@@ -654,7 +684,7 @@ impl Tally {
 
     fn pl7_text(&self, extension: Extension) -> Pl7Text {
         // Under headings, each unit says what it is.
-        if self.chart > 0 && self.headings() == 0 {
+        if self.has_chart() && self.headings() == 0 {
             return if self.pages > 0 { Pl7Text::Gr7 } else { Pl7Text::Sfc };
         }
         // Of all words, those of rungs are the least ambiguous; a line of a rung may look like a line of other languages.
@@ -701,8 +731,8 @@ fn is_chart_line(code: &str, first: &str) -> bool {
     let rest = word(code).1.trim_start();
     let next = word(rest).0;
     match first {
-        "STEP" => rest.contains(':'),
-        "ACTION" => rest.starts_with('(') || rest.contains(':'),
+        "STEP" => !next.is_empty() && rest.contains(':'),
+        "ACTION" => rest.starts_with('(') || rest.contains(':') && !rest.starts_with(":="),
         "TRANSITION" => rest.starts_with('(') || ["AT", "FROM"].iter().any(|it| it.eq_ignore_ascii_case(next)),
         "PAGE" => !next.is_empty() && next.bytes().all(|it| it.is_ascii_digit()),
         _ => true,
@@ -735,9 +765,12 @@ fn has_pl7_object(line: &str) -> bool {
 /// has a comma.
 fn has_pl7_2_object(line: &str) -> bool {
     let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
+    let is_declared = || line.split_once(" AT ").is_some_and(|it| declared_by_pl7_2(it.1.trim_start()));
     let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
     let is_transfer = || line.contains("->") && line.contains("END_BLOCK") && !line.contains(":=");
-    words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault)) || is_transfer()
+    words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault))
+        || is_transfer()
+        || is_declared()
 }
 
 /// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
@@ -1168,6 +1201,15 @@ mod tests {
             check(path, textual, Detected::Pasted(Pl7Text::Sfc));
         }
         check("a.txt", "Step 1: open the valve\nStep 2: close it\nAction: none\n", Detected::NotPlc);
+        // A part of a chart may lack the initial step.
+        let part = "STEP X1 : Fill(N); END_STEP\nTRANSITION FROM X1 TO X2 := %I1.0; END_TRANSITION\n\
+                    STEP X2 : END_STEP\nACTION Fill : %Q2.0 := TRUE; END_ACTION\n";
+        for path in ["a.txt", "a.st", "a.sfc"] {
+            check(path, part, Detected::Pasted(Pl7Text::Sfc));
+            check(path, &part.replace('%', "").replace('.', ",0"), Detected::Pl72);
+        }
+        assert_eq!(pl7_text("STEP X1 : END_STEP\nTRANSITION FROM X1 TO X2 := I0,01; END_TRANSITION\n"), Pl7Text::Sfc);
+        check("a.st", "! Step := 1;\n! Action := %MW3;\n", Detected::Pasted(Pl7Text::St));
     }
 
     #[test]

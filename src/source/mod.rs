@@ -15,6 +15,8 @@ pub mod line_index;
 mod scan;
 pub mod split;
 pub mod stx;
+#[cfg(test)]
+mod testing;
 pub mod walk;
 
 pub use heading::entity_from_address;

@@ -6,11 +6,13 @@
 //! **Invariant:** the units tile the text, in order, and there is at least one; their keys differ, and hang on the
 //! unit's own heading and on earlier units of the same name only.
 
+use std::ops::Range;
+
 use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::detect::{Detected, Pl7Text, pl7_text, unsupported};
+use super::detect::{Detected, Pl7Text, operands_of, pl7_text, unsupported};
 use super::heading::{
     Heading, HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_2_entity, pl7_address,
     pl7_heading, strip_prefix_ignore_case, word,
@@ -31,6 +33,9 @@ pub struct UnitSpan {
     pub range: TextRange,
     /// The name of the form that the unit is in, if it is one that is not read: the unit must be reported, not parsed.
     pub unsupported: Option<&'static str>,
+    /// Whether a heading, a header or the configuration says what the unit is, of pages that of their chart; else it may be
+    /// a listing out of something larger.
+    pub is_named: bool,
 }
 
 /// What the configuration says of a file that does not say it itself.
@@ -47,11 +52,11 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
     let mut units = Units { text, drafts: Vec::new(), code_end: 0 };
     match detected {
         Detected::Step7 => step7(&mut units, hint),
-        Detected::Pasted(default) => pasted(&mut units, default, hint),
+        Detected::Pasted(default) => pasted(&mut units, default, Family::Pl7, hint),
         Detected::Exchange => exchange(&mut units, Family::Pl7),
         Detected::Pl72Exchange => exchange(&mut units, Family::Pl72),
         Detected::Stx => project(&mut units),
-        Detected::Pl72 => pl7_2(&mut units, hint),
+        Detected::Pl72 => pasted(&mut units, pl7_2_text(text), Family::Pl72, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
             units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
         }
@@ -98,8 +103,10 @@ pub fn resplit(
         hint.mnemonics = Some(before);
     }
     let cut = split(part, detected, &hint);
-    let same =
-        |a: &UnitSpan, b: &UnitSpan| a.entity == b.entity && a.language == b.language && a.unsupported == b.unsupported;
+    let same = |a: &UnitSpan, b: &UnitSpan| {
+        let kind = |it: &UnitSpan| (it.language, it.unsupported, it.is_named);
+        a.entity == b.entity && kind(a) == kind(b)
+    };
     let expected: Vec<&UnitSpan> = [unit].into_iter().chain(next).collect();
     let is_same = cut.len() == expected.len() && cut.iter().zip(expected).all(|(a, b)| same(a, b));
     // Without a heading of its own, only the first unit is what the hint says.
@@ -145,6 +152,12 @@ fn heading_of(part: &str, detected: Detected) -> bool {
     })
 }
 
+/// The first line of code in the text of a PL7 unit, by bytes.
+pub fn first_code(text: &str) -> Option<Range<usize>> {
+    let line = Lines::new(text, Comments::Pl7).find(|it| !it.code.is_empty())?;
+    Some(line.code_start..line.code_start + line.code.trim_end().len())
+}
+
 /// A unit whose end is not known yet.
 #[derive(Debug, Clone)]
 struct Draft {
@@ -155,6 +168,7 @@ struct Draft {
     /// `None` is PL7, in the language that the text looks like.
     language: Option<Language>,
     unsupported: Option<&'static str>,
+    is_named: bool,
 }
 
 impl Draft {
@@ -163,7 +177,7 @@ impl Draft {
     }
 
     fn new(entity: Entity, language: Option<Language>) -> Self {
-        Self { start: 0, label: None, entity, language, unsupported: None }
+        Self { start: 0, label: None, entity, language, unsupported: None, is_named: true }
     }
 
     fn name(&self) -> SmolStr {
@@ -198,6 +212,14 @@ impl Units<'_> {
         self.drafts.last().is_some_and(|it| matches!(it.language, Some(Language::Pl7Gr7 | Language::Pl72Gr7)))
     }
 
+    /// Of the first drafts, which no heading names in a text with headings: their own operands say whose they are.
+    fn let_operands_decide(&mut self, count: usize, family: Family) {
+        let family = operands_of(self.text.get(..self.code_end).unwrap_or_default()).unwrap_or(family);
+        for draft in self.drafts.iter_mut().take(count) {
+            draft.language = draft.language.map(|it| of_family(it, family));
+        }
+    }
+
     fn push(&mut self, start: usize, draft: Draft) {
         self.drafts.push(Draft { start, ..draft });
     }
@@ -224,6 +246,7 @@ impl Units<'_> {
                 language,
                 range: TextRange::new(offset(draft.start), offset(end)),
                 unsupported,
+                is_named: draft.is_named,
             }
         };
         self.drafts.into_iter().zip(ends).map(span).collect()
@@ -367,15 +390,20 @@ fn mnemonics(text: &str) -> Mnemonics {
     })
 }
 
-/// PL7 as it is pasted in documents: headings, and code before the first one.
-fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
-    let unnamed = || {
-        let is_chart = matches!(default, Pl7Text::Gr7 | Pl7Text::Sfc);
-        let part = if is_chart { Part::Chart("CHART".into()) } else { Part::Main };
+/// PL7 and PL7-2 as they are pasted in documents: headings, and code before the first one. Each heading says whose part
+/// follows; `default` and `family` are of code that no heading names.
+fn pasted(units: &mut Units<'_>, default: Pl7Text, family: Family, hint: &SplitHint) {
+    let unnamed = |family| {
+        let language = of_family(pl7_language(default), family);
+        let graph = if family == Family::Pl72 { "SEQ" } else { "CHART" };
+        let part = if language.is_chart() { Part::Chart(graph.into()) } else { Part::Main };
         let main = Entity::Pl7 { task: Task::Mast, section: None, part };
-        Draft::new(hint.entity.clone().unwrap_or(main), Some(pl7_language(default)))
+        let draft = Draft::new(hint.entity.clone().unwrap_or(main), Some(language));
+        Draft { is_named: hint.entity.is_some(), ..draft }
     };
     let mut pages = 0;
+    // Drafts of the code before the first heading.
+    let mut before_headings = Some(0);
     // Within a DFB type; behind one, where code that no heading names is a unit of its own.
     let (mut in_dfb, mut after_dfb) = (false, false);
     for line in Lines::new(units.text, Comments::Pl7) {
@@ -384,22 +412,20 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
         }
         let was_dfb = in_dfb;
         in_dfb &= !ends_program(line.code);
-        if let Some(name) = dfb_header(line.code) {
+        if let Some(name) = dfb_header(line.code).filter(|_| family == Family::Pl7) {
+            before_headings = None;
             units.push(units.code_end, Draft::new(Entity::Dfb { name: name.into() }, None));
             (in_dfb, after_dfb) = (true, false);
         } else if let Some(heading) = pl7_heading(line.code) {
             (in_dfb, after_dfb) = (false, false);
-            let (language, unsupported) = match heading.language {
-                _ if heading.pl7_2 => (Language::Exchange, Some(unsupported::PL7_2)),
-                HeadingLanguage::Il => (Language::Pl7Il, None),
-                HeadingLanguage::St => (Language::Pl7St, None),
-                HeadingLanguage::Ladder => (Language::Pl7Ld, None),
-                HeadingLanguage::Grafcet => (Language::Pl7Gr7, None),
-            };
-            units.push(units.code_end, Draft { unsupported, ..Draft::new(heading.entity, Some(language)) });
+            let draft = headed(heading, family);
+            if let Some(count) = before_headings.take() {
+                units.let_operands_decide(count, family);
+            }
+            units.push(units.code_end, draft);
             pages = 0;
         } else if units.drafts.is_empty() || after_dfb {
-            units.push(units.code_end, unnamed());
+            units.push(units.code_end, unnamed(family));
             after_dfb = false;
         } else if was_dfb && !in_dfb {
             after_dfb = true;
@@ -409,58 +435,51 @@ fn pasted(units: &mut Units<'_>, default: Pl7Text, hint: &SplitHint) {
         {
             units.page(page, &mut pages);
         }
+        if let Some(count) = &mut before_headings {
+            *count = units.drafts.len();
+        }
         units.code_end = line.end;
     }
     if units.drafts.is_empty() {
-        units.push(0, unnamed());
+        units.push(0, unnamed(family));
+    }
+}
+
+/// The unit that a heading names. PL7-2 has ladder and Grafcet alone: what is in another language is PL7's, unless its
+/// heading says otherwise.
+fn headed(heading: Heading, family: Family) -> Draft {
+    let (language, has_older) = match heading.language {
+        HeadingLanguage::Il => (Language::Pl7Il, false),
+        HeadingLanguage::St => (Language::Pl7St, false),
+        HeadingLanguage::Ladder => (Language::Pl7Ld, true),
+        HeadingLanguage::Grafcet => (Language::Pl7Gr7, true),
+    };
+    if heading.pl7_2 && !has_older {
+        let draft = Draft::new(heading.entity, Some(Language::Pl72Ld));
+        return Draft { unsupported: Some(unsupported::PL7_2_LANGUAGE), ..draft };
+    }
+    let is_older = heading.pl7_2 || family == Family::Pl72 && has_older;
+    Draft::new(heading.entity, Some(if is_older { of_family(language, Family::Pl72) } else { language }))
+}
+
+/// A language of ladder or charts with the operands of a family; other languages as they are.
+fn of_family(language: Language, family: Family) -> Language {
+    match (language, family) {
+        (Language::Pl7Ld, Family::Pl72) => Language::Pl72Ld,
+        (Language::Pl7Gr7, Family::Pl72) => Language::Pl72Gr7,
+        (Language::Sfc, Family::Pl72) => Language::Pl72Sfc,
+        (Language::Pl72Ld, Family::Pl7) => Language::Pl7Ld,
+        (Language::Pl72Gr7, Family::Pl7) => Language::Pl7Gr7,
+        (Language::Pl72Sfc, Family::Pl7) => Language::Sfc,
+        _ => language,
     }
 }
 
 /// The language of PL7-2 that text without a heading is in.
-fn pl7_2_language(text: Pl7Text) -> Language {
-    match text {
-        Pl7Text::Gr7 => Language::Pl72Gr7,
-        Pl7Text::Sfc => Language::Pl72Sfc,
-        Pl7Text::Ld | Pl7Text::Il | Pl7Text::St => Language::Pl72Ld,
-    }
-}
-
-/// PL7-2: headings, and code before the first one.
-fn pl7_2(units: &mut Units<'_>, hint: &SplitHint) {
-    let unnamed = |text: &str| {
-        let language = pl7_2_language(pl7_text(text));
-        let part = if language.is_chart() { Part::Chart("SEQ".into()) } else { Part::Main };
-        let main = Entity::Pl7 { task: Task::Mast, section: None, part };
-        Draft::new(hint.entity.clone().unwrap_or(main), Some(language))
-    };
-    let named = |heading: Heading| {
-        let (language, unsupported) = match heading.language {
-            HeadingLanguage::Ladder => (Language::Pl72Ld, None),
-            HeadingLanguage::Grafcet => (Language::Pl72Gr7, None),
-            HeadingLanguage::Il | HeadingLanguage::St => (Language::Exchange, Some(unsupported::PL7_2_LANGUAGE)),
-        };
-        Draft { unsupported, ..Draft::new(heading.entity, Some(language)) }
-    };
-    let mut pages = 0;
-    for line in Lines::new(units.text, Comments::Pl7) {
-        if line.code.is_empty() {
-            continue;
-        }
-        if let Some(heading) = pl7_heading(line.code) {
-            units.push(units.code_end, named(heading));
-            pages = 0;
-        } else if units.drafts.is_empty() {
-            units.push(0, unnamed(units.text));
-        }
-        if units.in_chart()
-            && let Some(page) = page_line(line.code)
-        {
-            units.page(page, &mut pages);
-        }
-        units.code_end = line.end;
-    }
-    if units.drafts.is_empty() {
-        units.push(0, unnamed(units.text));
+fn pl7_2_text(text: &str) -> Pl7Text {
+    match pl7_text(text) {
+        it @ (Pl7Text::Gr7 | Pl7Text::Sfc) => it,
+        Pl7Text::Ld | Pl7Text::Il | Pl7Text::St => Pl7Text::Ld,
     }
 }
 
@@ -502,12 +521,14 @@ fn exchange(units: &mut Units<'_>, family: Family) {
         match state {
             State::Keys => {
                 if let Some(program) = keys.read(code) {
-                    let draft =
-                        if family == Family::Pl72 { keys.pl7_2_program(program) } else { keys.program(program) };
+                    let at = line.code_start + (line.code.len() - program.len());
+                    let draft = match keys.family(units.text.get(at..).unwrap_or_default()).unwrap_or(family) {
+                        Family::Pl72 => keys.pl7_2_program(program),
+                        _ => keys.program(program),
+                    };
                     if let Some(header) = units.drafts.last_mut() {
                         header.label = Some(format_smolstr!("[SOURCE_UNIT] {}", draft.name()));
                     }
-                    let at = line.code_start + (line.code.len() - program.len());
                     let start = if at == line.code_start { units.code_end } else { at };
                     units.push(start, draft);
                     state = State::Program;
@@ -678,6 +699,28 @@ impl<'t> SourceUnit<'t> {
         Draft { unsupported, ..Draft::new(entity, language) }
     }
 
+    /// Whose program it is, by its keys or by its operands; `text` starts with it. DFB types, and languages other than
+    /// ladder and Grafcet, are PL7's.
+    fn family(&self, text: &str) -> Option<Family> {
+        let is_older = |it: &str| strip_prefix_ignore_case(it, "PL7-2").is_some();
+        let is =
+            |it: Option<&str>, names: &[&str]| it.is_some_and(|it| names.iter().any(|n| n.eq_ignore_ascii_case(it)));
+        if self.address.is_some_and(is_older) {
+            return Some(Family::Pl72);
+        }
+        if is(self.language, &["IL", "ST"]) || strip_prefix_ignore_case(text, "FUNCTION_BLOCK").is_some() {
+            return Some(Family::Pl7);
+        }
+        let mut end = 0;
+        for line in text.split_inclusive(['\n', '\r']) {
+            if ends_program(line.trim_start()) || exchange_block(line.trim_start()).is_some() {
+                break;
+            }
+            end += line.len();
+        }
+        operands_of(text.get(..end).unwrap_or_default())
+    }
+
     /// As [`Self::program`], of PL7-2, which has no sections.
     fn pl7_2_program(&self, line: &str) -> Draft {
         let repeated = strip_prefix_ignore_case(line, "PROGRAM").unwrap_or_default();
@@ -689,7 +732,7 @@ impl<'t> SourceUnit<'t> {
         let language = self.language.unwrap_or_default().to_ascii_uppercase();
         let (language, unsupported) = match language.as_str() {
             "LD" => (Language::Pl72Ld, None),
-            "IL" | "ST" => (Language::Exchange, Some(unsupported::PL7_2_LANGUAGE)),
+            "IL" | "ST" => (Language::Pl72Ld, Some(unsupported::PL7_2_LANGUAGE)),
             "" if !matches!(entity, Entity::Pl7 { part: Part::Chart(_), .. }) => (Language::Pl72Ld, None),
             _ => (Language::Pl72Gr7, None),
         };
@@ -897,14 +940,42 @@ mod tests {
                     "ST : MAST - Peinture - CHART - PAGE 0 %X(0) --> %X(1)\n%M1\n",
                 ),
                 ("FAST - MAIN", LD, "LD : FAST - MAIN\nRUNG\n"),
-                ("MAST - POST", KEYS, "LD : PL7-2 - POST\n"),
-                ("MAST - PRL", KEYS, "ST : PL7-2 - PRL\n"),
+                ("MAST - POST", Language::Pl72Ld, "LD : PL7-2 - POST\n"),
+                ("MAST - PRL", Language::Pl72Ld, "ST : PL7-2 - PRL\n"),
                 ("MAST - Peinture - CHART", GR7, "GR7 : MAST - Peinture - CHART\n"),
             ],
         );
-        use super::unsupported::PL7_2;
-        let expected = [None, None, None, None, None, Some(PL7_2), Some(PL7_2), None];
+        use super::unsupported::PL7_2_LANGUAGE;
+        let expected = [None, None, None, None, None, None, Some(PL7_2_LANGUAGE), None];
         assert_eq!(unsupported(&units), expected);
+        assert_eq!(units.iter().map(|it| it.is_named).collect::<Vec<_>>()[..2], [false, true]);
+    }
+
+    #[test]
+    fn each_heading_says_whose_part_follows() {
+        let languages = |detected, text: &str| -> Vec<Language> {
+            split(text, detected, &SplitHint::default()).iter().map(|it| it.language).collect()
+        };
+        let text =
+            |before: &str| format!("{before}LD : PL7-2 - PRL\nRUNG\nLD : MAST - MAIN\nRUNG\nGR7 : PL7-2 - SEQ\n");
+        let ld = Detected::Pasted(Pl7Text::Ld);
+        let (older, gr7) = (Language::Pl72Ld, Language::Pl72Gr7);
+        assert_eq!(languages(ld, &text("")), [older, LD, gr7]);
+        assert_eq!(languages(ld, &text("RUNG\nCOIL(O0,05);\n")), [older, older, LD, gr7], "by its operands");
+        assert_eq!(languages(ld, &text("RUNG\nCOIL(%Q2.0);\n")), [LD, older, LD, gr7]);
+        // Who says that all of it is PL7-2's still has other languages of PL7.
+        assert_eq!(languages(Detected::Pl72, &text("ST : EVT1\n")), [ST, older, older, gr7]);
+    }
+
+    #[test]
+    fn pages_are_named_by_the_heading_of_their_chart() {
+        let named = |text: &str| -> Vec<bool> {
+            let units = split(text, Detected::Pasted(Pl7Text::Gr7), &SplitHint::default());
+            units.iter().map(|it| it.is_named).collect()
+        };
+        assert_eq!(named("PAGE 0\nPAGE 1\n"), [false, false]);
+        assert_eq!(named("GR7 : MAST - CHART\nPAGE 0\nPAGE 1\n"), [true, true]);
+        assert_eq!(named("PAGE 0\nGR7 : MAST - CHART\nPAGE 1\nPAGE 2\n"), [false, true, true]);
     }
 
     #[test]
@@ -922,7 +993,7 @@ mod tests {
                 ("MAST - SEQ - PAGE 1", gr7, "GR7 : PL7-2 - SEQ\nPAGE 1\nEND_PAGE\n"),
                 ("MAST - SEQ - PAGE 2", gr7, "PAGE 2\n"),
                 ("FAST - MAIN", ld, "LD : PL7-2 - FAST\n"),
-                ("MAST - MAIN", KEYS, "ST : PL7-2 - MAST\n"),
+                ("MAST - MAIN", ld, "ST : PL7-2 - MAST\n"),
             ],
         );
         let expected: Vec<_> = units.iter().map(|it| it.unsupported.is_some()).collect();
@@ -948,9 +1019,14 @@ mod tests {
         assert_eq!(of(&unit("LD", "PRL")), Some(("MAST - PRL".to_owned(), Language::Pl72Ld, false)));
         assert_eq!(of(&unit("LD", "PL7-2 FAST")), Some(("FAST - MAIN".to_owned(), Language::Pl72Ld, false)));
         assert_eq!(of(&unit("OTHERS", "SEQ")), Some(("MAST - SEQ".to_owned(), Language::Pl72Gr7, false)));
-        assert_eq!(of(&unit("IL", "POST")), Some(("MAST - POST".to_owned(), KEYS, true)));
-        let pl7 = language(Detected::Exchange, &unit("LD", "MAST MAIN"));
-        assert_eq!(pl7.map(|it| it.1), Some(LD));
+        assert_eq!(of(&unit("IL", "PL7-2 POST")), Some(("MAST - POST".to_owned(), Language::Pl72Ld, true)));
+        assert_eq!(of(&unit("IL", "MAST POST")).map(|it| (it.1, it.2)), Some((IL, false)), "no language of PL7-2");
+        let pl7 = |text: &str| language(Detected::Exchange, text).map(|it| it.1);
+        assert_eq!(pl7(&unit("LD", "MAST MAIN")), Some(LD));
+        // Of a file with units of both, each is what its operands say.
+        let with = |operand: &str| unit("LD", "MAST MAIN").replace("RUNG\n", &format!("RUNG\nCOIL({operand});\n"));
+        assert_eq!(pl7(&format!("{}{}", with("%Q2.0"), with("O0,05"))), Some(Language::Pl72Ld));
+        assert_eq!(of(&with("%Q2.0")).map(|it| it.1), Some(LD));
     }
 
     #[test]

@@ -238,10 +238,35 @@ fn at_declaration(p: &Parser<'_>) -> bool {
     p.at(Ident) && p.nth(1) == Some(Colon) || name_length(p).is_some()
 }
 
+/// Tokens of the longest address, and of what may stand in its place.
+const LONGEST_ADDRESS: usize = 8;
+
+/// How many tokens an address takes: `%M0`, and of PL7-2 `B3`, `%I0,05`, `COM15,3,F`, `B0[16]`. The letters and digits that
+/// stand first tell it from other words; what follows is part of it up to what ends it.
+fn address_length(p: &Parser<'_>, at: usize) -> Option<usize> {
+    match p.nth(at)? {
+        ObjectAddress if p.nth(at + 1) != Some(SyntaxKind::Comma) => return Some(1),
+        ObjectAddress => {}
+        Ident => {
+            let text = p.nth_text(at);
+            let letters = text.trim_end_matches(|it: char| it.is_ascii_digit());
+            let is_short = (1..=3).contains(&letters.len()) && letters.bytes().all(|it| it.is_ascii_alphabetic());
+            if !is_short || letters.len() == text.len() {
+                return None;
+            }
+        }
+        _ => return None,
+    }
+    let ends = |it: usize| {
+        matches!(p.nth(it), None | Some(Semicolon | Colon | SyntaxKind::Assign | BlockMark)) || p.nth_newline_before(it)
+    };
+    (1..LONGEST_ADDRESS).find(|&it| ends(at + it))
+}
+
 /// How many tokens stand before `AT %M0`. More than one when the name is none, such as `Pump-1`.
 fn name_length(p: &Parser<'_>) -> Option<usize> {
     let ends = |at: usize| {
-        p.nth(at) == Some(Ident) && p.nth_text(at).eq_ignore_ascii_case("AT") && p.nth(at + 1) == Some(ObjectAddress)
+        p.nth(at) == Some(Ident) && p.nth_text(at).eq_ignore_ascii_case("AT") && address_length(p, at + 1).is_some()
     };
     for at in 0..LONGEST_NAME {
         if at > 0 && ends(at) {
@@ -265,8 +290,10 @@ fn declaration(p: &mut Parser<'_>) {
     p.complete(name, VarName);
     if length.is_some() {
         p.bump();
-        let address = p.start();
-        p.bump();
+        let (address, length) = (p.start(), address_length(p, 0).unwrap_or(1));
+        for _ in 0..length {
+            p.bump();
+        }
         p.complete(address, ObjectRef);
     }
     if p.eat(Colon) && p.at(Ident) && !at_next(p) {

@@ -4,6 +4,8 @@
 //! wrong is an error node and an entry in [`Parse::errors`]. Time is linear in the input, depth is limited.
 //! **Invariant:** this module knows no database, no configuration, no controller and no rule.
 
+use rowan::TextRange;
+
 mod builder;
 mod kind;
 mod node;
@@ -82,13 +84,16 @@ pub fn parse(language: Language, text: &str) -> Parse {
     }
 }
 
-/// The tree of text in a language that is not read: one error node.
-pub fn opaque(text: &str) -> Parse {
+/// The tree of text in a language that is not read: one error node, and where that is an error, its place and message.
+pub fn opaque(text: &str, error: Option<(TextRange, &str)>) -> Parse {
     let len = u32::try_from(text.len()).unwrap_or(u32::MAX);
     let tokens: &[Token] = &[Token { kind: SyntaxKind::Unknown, len }];
     let mut parser = Parser::new(text, if text.is_empty() { &[] } else { tokens });
     let node = parser.start();
     parser.bump();
     parser.complete(node, SyntaxKind::Error);
+    if let Some((range, message)) = error {
+        parser.error_at(range, message);
+    }
     parser.finish()
 }

@@ -69,6 +69,8 @@ pub struct ClearedBit {
 pub struct ChartCapacity {
     /// Those of expansions too, but for `IN` and `OUT`.
     pub steps: Limit,
+    /// Those among them that are initial.
+    pub initial_steps: Option<Limit>,
     pub transitions: Limit,
     pub and_convergences: Option<Limit>,
     /// Origin and destination.
@@ -301,6 +303,7 @@ impl Target {
                 let default = self.processor().map(|it| it.chart_default);
                 Some(ChartCapacity {
                     steps: most.all_steps,
+                    initial_steps: None,
                     transitions: pl7::TRANSITIONS,
                     and_convergences: Some(pl7::AND_CONVERGENCES),
                     connectors: None,
@@ -311,6 +314,7 @@ impl Target {
             }
             Family::Pl72 => Some(ChartCapacity {
                 steps: pl72::STEPS,
+                initial_steps: Some(pl72::INITIAL_STEPS),
                 transitions: pl72::TRANSITIONS,
                 and_convergences: None,
                 connectors: Some((pl72::ORIGIN_CONNECTORS, pl72::DESTINATION_CONNECTORS)),

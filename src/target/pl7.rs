@@ -29,18 +29,6 @@ pub const FAST_PERIOD_MS: Range = Range::new(1, 255, "PL7:2023");
 /// Timers `%TM` and `%T` together.
 pub const TIMERS_MICRO: Limit = Limit::new(64, "PL7:999");
 pub const TIMERS_PREMIUM: Limit = Limit::new(255, "PL7:999");
-/// Priorities among events: of the smaller Micros, and of all others, where EVT0 comes before the rest.
-pub const EVENT_LEVELS_37_10: Limit = Limit::new(1, "PL7:2113");
-pub const EVENT_LEVELS: Limit = Limit::new(2, "PL7:2117");
-/// Inputs of the module in position 1 of a Micro that can raise events.
-pub const EVENT_INPUTS_MICRO: Range = Range::new(0, 3, "PL7:2079");
-/// Discrete channels that are exchanged together (also PL7:2502).
-pub const DISCRETE_GROUP: Limit = Limit::new(8, "PL7:2419");
-/// Analog outputs of a Micro, and channels of analog modules of a Premium that are not isolated, that are exchanged together.
-pub const ANALOG_OUTPUT_GROUP_MICRO: Limit = Limit::new(2, "PL7:2441");
-pub const ANALOG_GROUP_PREMIUM: Limit = Limit::new(4, "PL7:2448");
-/// Power failures below this many milliseconds pass unseen: of an alternating and of a direct supply (also PL7:1778).
-pub const UNSEEN_POWER_FAILURE_MS: (Limit, Limit) = (Limit::new(10, "PL7:1761"), Limit::new(1, "PL7:1761"));
 /// What initialises, clears and freezes charts, and resets macro-steps.
 pub static CHART_BITS: ChartBits = ChartBits {
     bits: Range::new(21, 24, "PL7:4939"),
@@ -53,8 +41,6 @@ pub static CHART_BITS: ChartBits = ChartBits {
 /// Times of steps, in units of 100 ms.
 pub const STEP_TIMES: Range = Range::new(0, 9999, "PL7:4248");
 pub const STEP_TIME_UNIT_MS: Limit = Limit::new(100, "PL7:4248");
-/// Only these system words can be a table.
-pub const SYSTEM_WORD_TABLE: Range = Range::new(50, 53, "PL7:1045");
 /// Transitions of a chart, of which at most 64 may close or open AND branches (PL7:4286).
 pub const TRANSITIONS: Limit = Limit::new(1024, "PL7:4190");
 pub const AND_CONVERGENCES: Limit = Limit::new(64, "PL7:4286");
@@ -78,23 +64,8 @@ pub const MACRO_STEPS: Range = Range::new(0, 63, "PL7:4215");
 /// A preset of a timer, counter or monostable. Volume 1 tells only which presets a program may write (PL7:977-995).
 pub const PRESETS: Range = Range::new(0, 9999, "the vendor's general documentation; PL72:668, 748 for PL7-2");
 
-/// Bits that the memory of bits holds: of a Micro (also PL7:1421, 1520), and of a Premium within its words.
-pub const BIT_MEMORY_MICRO: Limit = Limit::new(1280, "PL7:1332");
-pub const BIT_MEMORY_PREMIUM: Limit = Limit::new(4096, "PL7:1384");
-/// Words `%MW` that the Flash memory of a Micro can keep.
-pub const SAVED_WORDS_MICRO: Limit = Limit::new(1000, "PL7:1353");
-/// K words of program that it can keep, of the smaller and the larger processors (also PL7:1374).
-pub const SAVED_PROGRAM_MICRO: (Limit, Limit) = (Limit::new(9, "PL7:1352"), Limit::new(15, "PL7:1352"));
-/// The same with a memory cartridge, where it keeps words alone.
-pub const FLASH_MICRO: (Limit, Limit) = (Limit::new(10, "PL7:1365"), Limit::new(16, "PL7:1365"));
-/// K words of RAM that the system of a Premium takes at least.
-pub const SYSTEM_MEMORY_PREMIUM: Limit = Limit::new(5, "PL7:1390");
-
 // Parts of addresses. Positions and racks are the processor's.
 
-/// Channels of a module, and ranks of a channel, in the rack of a Micro.
-pub const CHANNELS_MICRO: Range = Range::new(0, 31, "PL7:678");
-pub const RANKS_MICRO: Range = Range::new(0, 127, "PL7:679");
 /// Channels of a module, and ranks of a channel, in a rack of a Premium.
 pub const CHANNELS: Range = Range::new(0, 127, "PL7:755");
 pub const RANKS: Range = Range::new(0, 127, "PL7:756");
@@ -104,7 +75,6 @@ pub const FIPIO_LINK: Range = Range::new(2, 2, "PL7:807");
 pub const FIPIO_POINTS: Range = Range::new(1, 127, "PL7:808");
 /// Base module and extension.
 pub const FIPIO_MODULES: Range = Range::new(0, 1, "PL7:809");
-pub const FIPIO_CHANNELS: Range = Range::new(0, 127, "PL7:810");
 pub const FIPIO_RANKS: Range = Range::new(0, 255, "PL7:811");
 pub const ASI_CHANNELS: Range = Range::new(0, 0, "PL7:852");
 pub const ASI_SLAVES: Range = Range::new(0, 31, "PL7:853");
@@ -119,45 +89,32 @@ pub const WORD_BITS: Range = Range::new(0, 15, "PL7:631");
 
 pub const SYMBOL_LENGTH: Limit = Limit::new(32, "PL7:1198");
 /// Of a symbol that a module gives its objects: what the user chooses, and what the module appends.
-pub const PRESYMBOL_PREFIX_LENGTH: Limit = Limit::new(12, "PL7:1275");
-pub const PRESYMBOL_SUFFIX_LENGTH: Limit = Limit::new(20, "PL7:1276");
 pub const SYMBOL_COMMENT_LENGTH: Limit = Limit::new(508, "PL7:1222");
 pub const SECTION_NAME_LENGTH: Limit = Limit::new(24, "PL7:1979");
 /// The program editor takes fewer characters than [`SECTION_NAME_LENGTH`].
 pub const SECTION_NAME_LENGTH_IN_EDITOR: Limit = Limit::new(16, "the vendor's general documentation");
 pub const SECTION_COMMENT_LENGTH: Limit = Limit::new(250, "PL7:1985");
-pub const SUBROUTINE_COMMENT_LENGTH: Limit = Limit::new(250, "PL7:2007");
 /// Short and long name of a functional module.
-pub const MODULE_SHORT_NAME_LENGTH: Limit = Limit::new(8, "PL7:2533");
-pub const MODULE_LONG_NAME_LENGTH: Limit = Limit::new(16, "PL7:2534");
 pub const RUNG_COMMENT_LENGTH: Limit = Limit::new(222, "PL7:2695");
 pub const IL_COMMENT_LENGTH: Limit = Limit::new(222, "PL7:3032");
-pub const IL_COMMENT_LINES: Limit = Limit::new(3, "PL7:3032");
 pub const ST_COMMENT_LENGTH: Limit = Limit::new(256, "PL7:3548");
 pub const CHART_COMMENT_LENGTH: Limit = Limit::new(64, "PL7:4466");
-/// Name of an instance of a DFB (also PL7:5446).
-pub const INSTANCE_NAME_LENGTH: Limit = Limit::new(32, "PL7:1253");
 /// Name of a parameter or variable of a DFB (also PL7:1254, 5448).
 pub const DFB_ITEM_NAME_LENGTH: Limit = Limit::new(8, "PL7:5371");
 pub const DFB_ITEM_COMMENT_LENGTH: Limit = Limit::new(80, "PL7:5373");
 
 // Interface of a DFB type, which only a Premium has (PL7:5304).
 
-pub const DFB_INPUTS: Limit = Limit::new(15, "PL7:5412");
-pub const DFB_OUTPUTS: Limit = Limit::new(15, "PL7:5413");
-pub const DFB_IN_OUTS: Limit = Limit::new(15, "PL7:5414");
 /// Inputs and in/outs together.
 pub const DFB_INPUTS_AND_IN_OUTS: Limit = Limit::new(15, "PL7:5418");
 /// Outputs and in/outs together.
 pub const DFB_OUTPUTS_AND_IN_OUTS: Limit = Limit::new(15, "PL7:5419");
 pub const DFB_PUBLIC_VARIABLES: Limit = Limit::new(100, "PL7:5435");
 pub const DFB_PRIVATE_VARIABLES: Limit = Limit::new(100, "PL7:5436");
-/// Boolean inputs, at least.
-/// Channels of one module: 0 to 127.
-pub const MODULE_CHANNELS: Limit = Limit::new(128, "PL7:755");
 /// Columns between two DFBs in series.
 pub const DFB_GAP: Limit = Limit::new(2, "PL7:5625");
-pub const DFB_BOOLEAN_INPUTS: Limit = Limit::new(1, "PL7:5423");
+/// Channels of one module: 0 to 127.
+pub const MODULE_CHANNELS: Limit = Limit::new(128, "PL7:755");
 
 /// What has a number and is counted. Numbers start at 0, and how many there are is set when the application is
 /// configured (PL7:622, 895, 1498-1499), but for the system bits.
@@ -174,33 +131,6 @@ pub static NUMBERED: &[Numbered] = &[
     Numbered { what: Counted::Monostables, key: "MN", prefix: "%MN", plural: "monostables" },
     Numbered { what: Counted::Registers, key: "R", prefix: "%R", plural: "registers" },
     Numbered { what: Counted::Drums, key: "DR", prefix: "%DR", plural: "drum controllers" },
-];
-
-/// Channels of a standard module of a Micro, which takes two positions (PL7:700-710): of the lower and of the upper one.
-/// A module of half that size takes one.
-#[derive(Debug, PartialEq, Eq)]
-pub struct MicroModule {
-    pub name: &'static str,
-    pub lower: Channels,
-    pub upper: Option<Channels>,
-}
-
-/// The first channel is 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Channels {
-    Inputs(u32),
-    Outputs(u32),
-}
-
-/// PL7:701-710. The columns of standard modules are told apart by what their names say.
-pub static MICRO_MODULES: &[MicroModule] = &[
-    MicroModule { name: "4S", lower: Channels::Outputs(4), upper: None },
-    MicroModule { name: "8E", lower: Channels::Inputs(8), upper: None },
-    MicroModule { name: "12E", lower: Channels::Inputs(12), upper: None },
-    MicroModule { name: "28E/S", lower: Channels::Inputs(16), upper: Some(Channels::Outputs(12)) },
-    MicroModule { name: "32E", lower: Channels::Inputs(16), upper: Some(Channels::Inputs(16)) },
-    MicroModule { name: "32S", lower: Channels::Outputs(16), upper: Some(Channels::Outputs(16)) },
-    MicroModule { name: "64E/S", lower: Channels::Inputs(32), upper: Some(Channels::Outputs(32)) },
 ];
 
 /// How much an event may exchange.
@@ -254,11 +184,6 @@ impl Series {
 
     /// Whether an index may be a constant word or an immediate value (PL7:1077-1080).
     pub const fn has_constant_index(self) -> bool {
-        matches!(self, Self::Premium)
-    }
-
-    /// Whether charts may have macro-steps (PL7:4280, PL7:4804).
-    pub const fn has_macro_steps(self) -> bool {
         matches!(self, Self::Premium)
     }
 }
@@ -639,7 +564,6 @@ mod tests {
         assert_eq!((small.chart_max.main_steps.value, small.chart_max.valid_transitions.value), (96, 192));
         assert_eq!((micro.chart_default.active_steps.value, micro.chart_max.active_steps.value), (20, 128));
         assert_eq!((premium.chart_max.macro_steps.value, premium.chart_max.all_steps.value), (64, 1024));
-        assert!(!micro.series.has_macro_steps() && premium.series.has_macro_steps());
         assert!(!micro.series.has_constant_index() && premium.series.has_constant_index());
         assert_eq!((micro.series.ladder_lines().value, premium.series.ladder_lines().value), (7, 16));
         assert_eq!((micro.series.timers().value, premium.series.timers().value), (64, 255));

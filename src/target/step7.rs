@@ -13,9 +13,6 @@ pub const COUNTER_MAX: Limit = Limit::new(999, "S7:591");
 /// What a counter can be set to.
 pub const COUNTER_PRESETS: Range = Range::new(0, COUNTER_MAX.value, COUNTER_MAX.source);
 
-/// Longest time of a timer, in seconds: 2H_46M_30S.
-pub const TIMER_MAX_SECONDS: Limit = Limit::new(9990, "S7:485");
-
 /// Number of timers and counters that a CPU usually has; it varies with the CPU.
 pub const USUAL_TIMERS: Limit = Limit::new(256, "S7:477");
 pub const USUAL_COUNTERS: Limit = Limit::new(256, "S7:591");

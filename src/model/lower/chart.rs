@@ -14,14 +14,16 @@ use super::{il, ladder, st};
 use crate::model::UnitModel;
 use crate::model::chart::{
     self, Action, ActionKind, Cell, Chart, CodeLanguage, Connector, ConnectorKind, Graph, Link, LinkKind, Node, Piece,
-    Receptivity, Segment, Step, StepKind, StepName, Transition,
+    Receptivity, Room, Segment, Step, StepKind, StepName, Transition,
 };
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
+use crate::model::ladder::{Grid, Layout};
 use crate::model::object::{self, Class, Object};
-use crate::model::unit::{Mode, StatementKind};
-use crate::syntax::pl7::ast::{Rung, Sentence, Stmt};
+use crate::model::unit::{Fork, Mode, StatementKind};
+use crate::syntax::pl7::ast::{BinOp, Expr, IlInstr, Rung, Sentence, Stmt};
 use crate::syntax::pl7::chart::ast;
+use crate::syntax::pl7::instructions::IlOp;
 use crate::syntax::{AstNode as _, Language, SyntaxKind, SyntaxNode, SyntaxToken};
 
 pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Language) -> UnitModel {
@@ -209,6 +211,7 @@ impl<'t> Lowering<'t> {
                 cell: it.cell().and_then(|it| cell(it, page)),
                 receptivity: Receptivity::Missing,
                 language: it.language(),
+                room: None,
                 range,
                 anchor,
             });
@@ -357,10 +360,13 @@ impl<'t> Lowering<'t> {
             if let Receptivity::Value(condition) = receptivity {
                 let rung = || tree.rungs().last().map(Rung::range);
                 let range = tree.sentences().last().map(Sentence::range).or_else(rung).unwrap_or(tree.range());
-                pl7.b.statement(StatementKind::Branch { condition }, range);
+                pl7.b.statement(StatementKind::Branch { condition, of: Fork::Receptivity }, range);
             }
+            let is_read = matches!(receptivity, Receptivity::Value(_));
+            let room = if is_read { room(&mut pl7, tree, language) } else { None };
             if let Some(transition) = self.chart.transitions.get_mut(at) {
                 transition.receptivity = receptivity;
+                transition.room = room;
                 transition.language = Some(language).filter(|_| !is_missing).or(transition.language);
             }
             self.pl7 = Some(pl7);
@@ -539,6 +545,41 @@ fn language_of(rung: Option<Rung<'_>>, sentence: Option<Sentence<'_>>) -> CodeLa
         (None, Some(it)) if it.instructions().next().is_some() => CodeLanguage::Il,
         (None, _) => CodeLanguage::St,
     }
+}
+
+/// Where the receptivity of a transition can ask more: none in what holds comments, labels or several sentences.
+fn room(pl7: &mut Pl7, tree: ast::Transition<'_>, language: CodeLanguage) -> Option<Room> {
+    let is_comment = |it: SyntaxToken<'_>| it.kind() == SyntaxKind::Comment;
+    if language == CodeLanguage::Ladder {
+        let rung = tree.rungs().next().filter(|_| tree.rungs().nth(1).is_none())?;
+        if rung.syntax().descendant_tokens().any(is_comment) {
+            return None;
+        }
+        let (place, cells) = Grid::new(rung, Layout::of(pl7.b.model.language)).link_before_end()?;
+        return Some(Room::Link { at: pl7.b.anchor(place), cells });
+    }
+    let mut sentences = tree.sentences().filter(|it| has_code(*it));
+    let sentence = sentences.next().filter(|_| sentences.next().is_none())?;
+    if sentence.label().is_some() || sentence.syntax().descendant_tokens().any(is_comment) {
+        return None;
+    }
+    let behind = |range: TextRange| TextRange::empty(range.end());
+    if language == CodeLanguage::Il {
+        let is_test = |it: IlInstr<'_>| !matches!(it.op(), Some(IlOp::Mps | IlOp::Mrd | IlOp::Mpp));
+        let last = sentence.instructions().last().filter(|_| sentence.instructions().all(is_test))?;
+        return Some(Room::List { behind: pl7.b.anchor(behind(last.syntax().text_range())) });
+    }
+    let mut statements = sentence.statements().filter(|it| !matches!(it, Stmt::Empty(_)));
+    let (Some(Stmt::Expr(only)), None) = (statements.next(), statements.next()) else { return None };
+    let expr = only.expr()?;
+    let range = expr.syntax().text_range();
+    let binds = match expr {
+        Expr::Object(_) | Expr::Name(_) | Expr::Paren(_) => true,
+        Expr::Bin(it) => it.op() == Some(BinOp::And),
+        _ => false,
+    };
+    let before = pl7.b.anchor(TextRange::empty(range.start()));
+    Some(Room::Expression { before, behind: pl7.b.anchor(behind(range)), binds })
 }
 
 fn has_code(sentence: Sentence<'_>) -> bool {

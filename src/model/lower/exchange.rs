@@ -46,7 +46,7 @@ impl Lowering<'_> {
         let address = child(SyntaxKind::ObjectRef);
         let object = address.and_then(|it| {
             let (address, at) = (self.joined(it), it.text_range());
-            match object::pl7::parse(&address) {
+            match object::declared(&address) {
                 Ok(object) => Some(object),
                 Err(error) => {
                     self.b.oddity(OddityKind::Address(error), at, address);
@@ -164,6 +164,26 @@ mod tests {
         );
         // Nothing of the vendor's part declares anything.
         check("[VENDOR]\nPump AT %M0 : EBOOL;\n[DATA_UNIT]\nMotor AT %M1;\n", &[["Motor", "%M1", "", "", ""]]);
+    }
+
+    #[test]
+    fn addresses_of_pl7_2() {
+        check(
+            "VAR_GLOBAL\nDepart AT I0,05 : BOOL; Pompe AT B3 : BOOL;\nMot AT W10 : WORD (*a*);Tempo AT T0; Fin AT %O0,05 ;\n\
+             Bit AT W5,A : BOOL; Texte AT TXT3,2;\nSuite AT B0[16] : BOOL;\nEND_VAR",
+            &[
+                ["Depart", "I0,05", "BOOL", "", ""],
+                ["Pompe", "B3", "BOOL", "", ""],
+                ["Mot", "W10", "WORD", "", "a"],
+                ["Tempo", "T0", "", "", ""],
+                ["Fin", "%O0,05", "", "", ""],
+                ["Bit", "W5,A", "BOOL", "", ""],
+                ["Texte", "", "", "", ""],
+                ["Suite", "B0[16]", "BOOL", "", ""],
+            ],
+        );
+        // Nothing of the kind: words that happen to stand so.
+        check("[APPLICATION]\nLOOK AT the pump 3, please\nMeet AT 10;\n", &[]);
     }
 
     #[test]

@@ -20,7 +20,7 @@ use crate::model::expr::{self, ExprId, Exprs, ObjectId};
 use crate::model::ladder::{BlockShape, Flaw, Grid, Layout, Placed, Wire};
 use crate::model::object::{self, Class, Object};
 use crate::model::symbols::{Remark, RemarkKind};
-use crate::model::unit::{Actual, Given, Leave, Mode, OddityKind, Pin, Slot, StatementKind};
+use crate::model::unit::{Actual, Fork, Given, Leave, Mode, OddityKind, Pin, Slot, StatementKind};
 use crate::model::work::{CodeKind, Network};
 use crate::syntax::pl7::ast::{self, Expr, Stmt};
 use crate::syntax::pl7::ladder_words::Element;
@@ -35,7 +35,7 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: 
     let code = ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs);
     let (mut pl7, receptivity) = rungs(pl7, code, is_transition);
     if let Some(condition) = receptivity {
-        pl7.b.statement(StatementKind::Branch { condition }, root.text_range());
+        pl7.b.statement(StatementKind::Branch { condition, of: Fork::Receptivity }, root.text_range());
     }
     pl7.b.finish()
 }

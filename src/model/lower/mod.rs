@@ -66,7 +66,7 @@ mod testing {
                 }
                 StatementKind::Jump(jump) => format!("jump when {}", show(model, model.jumps[jump as usize].when)),
                 StatementKind::Return { when, .. } => format!("return when {}", show(model, when)),
-                StatementKind::Branch { condition } => format!("branch on {}", show(model, condition)),
+                StatementKind::Branch { condition, .. } => format!("branch on {}", show(model, condition)),
                 StatementKind::Halt => "halt".to_owned(),
                 _ => continue,
             };

@@ -142,7 +142,8 @@ impl Pl7 {
                 }
             }
         };
-        self.b.model.indexes.push(Index { what, range: expr.syntax().text_range() });
+        let anchor = self.b.anchor(expr.syntax().text_range());
+        self.b.model.indexes.push(Index { what, anchor });
     }
 
     /// A symbol or an item of a DFB instance.

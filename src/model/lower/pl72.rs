@@ -121,7 +121,8 @@ impl Pl7 {
             Some(index) => {
                 let index = self.b.object(index);
                 self.b.read(index, range);
-                self.b.model.indexes.push(Index { what: IndexKind::Object(index), range });
+                let anchor = self.b.anchor(range);
+                self.b.model.indexes.push(Index { what: IndexKind::Object(index), anchor });
             }
             None => {
                 self.b.model.addresses.insert(address.into(), id);
@@ -526,7 +527,7 @@ mod tests {
         let receptivity = "LD : PL7-2 - SEQ - X3 --> X4\nRUNG\nOPEN_CONTACT(I0,05),H_LINK(8);\nEND_RUNG\n";
         let it = unit("PL7-2 - SEQ - X3 --> X4", receptivity, Language::Pl72Ld);
         let branch = it.statements.iter().find_map(|it| match it.kind {
-            StatementKind::Branch { condition } => Some((it.path, condition)),
+            StatementKind::Branch { condition, .. } => Some((it.path, condition)),
             _ => None,
         });
         assert_eq!(

@@ -10,7 +10,7 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs};
 use crate::model::object::Rights;
-use crate::model::unit::{DeadCause, Hollow, HollowKind, Leave, Loop, LoopKind, StatementKind};
+use crate::model::unit::{DeadCause, Fork, Hollow, HollowKind, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
@@ -86,33 +86,43 @@ impl Lowering {
     }
 
     /// Evaluates a condition under the current path, and notes that the program branches on it.
-    fn condition(&mut self, condition: Option<ast::Expr>) -> (ExprId, TextRange) {
+    fn condition(&mut self, condition: Option<ast::Expr>, of: Fork) -> (ExprId, TextRange) {
         match condition {
             Some(it) => {
                 let range = it.syntax().text_range();
                 let (value, _) = self.pl7.expr(&it);
-                self.pl7.b.statement(StatementKind::Branch { condition: value }, range);
+                self.pl7.b.statement(StatementKind::Branch { condition: value, of }, range);
                 (value, range)
             }
             None => (self.pl7.b.exprs().opaque(), TextRange::default()),
         }
     }
 
+    /// The conditions are evaluated one after the other, until one holds; then its arm is run. No arm is run before a
+    /// condition is evaluated, so all conditions come first.
     fn if_statement(&mut self, it: &ast::IfStmt) {
         let mut open = self.pl7.b.path();
-        let mut ends = Vec::new();
+        let (mut arms, mut after, mut cut) = (Vec::new(), None, None);
         for arm in it.arms() {
-            let (condition, at) = self.condition(arm.condition());
-            let cut = (open != Exprs::FALSE).then_some((DeadCause::FalseCondition, at));
+            let (condition, at) = self.condition(arm.condition(), Fork::Arm { after });
+            after = self.pl7.b.model.statements.len().checked_sub(1).map(index).filter(|_| arm.condition().is_some());
+            if open != Exprs::FALSE {
+                cut = Some((DeadCause::FalseCondition, at));
+            }
             let taken = self.pl7.b.exprs().and(open, condition);
+            let not = self.pl7.b.exprs().not(condition);
+            open = self.pl7.b.exprs().and(open, not);
+            self.pl7.b.enter(open, cut);
+            arms.push((arm, taken, cut));
+        }
+        let mut ends = Vec::with_capacity(arms.len());
+        for (arm, taken, cut) in arms {
             self.pl7.b.enter(taken, cut);
             self.hollow(HollowKind::Branch, arm.syntax(), arm.body());
             self.list(arm.body());
             ends.push(self.pl7.b.path());
-            let not = self.pl7.b.exprs().not(condition);
-            open = self.pl7.b.exprs().and(open, not);
-            self.pl7.b.enter(open, cut);
         }
+        self.pl7.b.enter(open, cut);
         if let Some(arm) = it.else_arm() {
             self.hollow(HollowKind::Branch, arm.syntax(), arm.body());
             self.list(arm.body());
@@ -150,7 +160,7 @@ impl Lowering {
     fn while_statement(&mut self, it: &ast::WhileStmt) {
         let before = self.pl7.b.path();
         let id = self.open_loop(LoopKind::While, keyword(it.syntax()));
-        let (condition, at) = self.condition(it.condition());
+        let (condition, at) = self.condition(it.condition(), Fork::Loop);
         self.set_condition(id, condition, at);
         let cut = (before != Exprs::FALSE).then_some((DeadCause::FalseCondition, at));
         let inside = self.pl7.b.exprs().and(before, condition);
@@ -166,7 +176,7 @@ impl Lowering {
         self.list(it.body());
         let after_body = self.pl7.b.path();
         self.pl7.b.enter(before, None);
-        let (condition, at) = self.condition(it.condition());
+        let (condition, at) = self.condition(it.condition(), Fork::Loop);
         self.set_condition(id, condition, at);
         self.pl7.b.close_loop();
         let exits = self.pl7.b.model.loops.get(id as usize).is_some_and(|it| it.exits);
@@ -435,7 +445,7 @@ mod tests {
                     IndexKind::Constant(value) => value.to_string(),
                     IndexKind::Computed => "computed".to_owned(),
                 };
-                (what, &text[std::ops::Range::<usize>::from(it.range)])
+                (what, &text[std::ops::Range::<usize>::from(model.place(it.anchor))])
             })
             .collect();
         let expected = [("%MW2", "%MW2"), ("4", "4"), ("computed", "%MW1 + 1"), ("%KW3", "%KW3")];

@@ -1,5 +1,6 @@
 //! What readers of addresses share: a cursor over the text, its numbers, and an object before it has a text.
 
+use crate::target::Range;
 use std::ops::RangeInclusive;
 
 use smol_str::SmolStr;
@@ -59,6 +60,11 @@ impl Number<'_> {
             return Ok(self.value);
         }
         Err(self.missing(what, &format!("from {} to {} ({source})", range.start(), range.end())))
+    }
+
+    /// As [`Self::within`], of a range of the manual.
+    pub(super) fn of(self, what: &str, range: Range) -> Result<u32, AddressError> {
+        self.within(what, range.first..=range.last, range.source)
     }
 
     /// `instead`: what exists.

@@ -225,6 +225,15 @@ pub struct Object {
     pub indexed: bool,
 }
 
+/// What an address of PL7 or PL7-2 names, in declarations of variables: without a percent sign it is PL7-2's.
+///
+/// # Errors
+/// Those of [`pl7::parse`] or [`pl72::parse`], by whose address it looks like.
+pub fn declared(address: &str) -> Result<Object, AddressError> {
+    let older = || pl72::parse(address).map(|it| it.object);
+    if address.starts_with('%') { pl7::parse(address).or_else(|error| older().map_err(|_| error)) } else { older() }
+}
+
 impl Object {
     /// A symbol of the program that nothing resolves.
     pub fn symbol(text: &str) -> Self {

@@ -2,6 +2,7 @@
 //!
 //! Numbers that only some controller lacks are not judged here: that is the business of [`crate::target`].
 
+use crate::target::{Range, pl7 as target};
 use std::borrow::Cow;
 
 use smol_str::{SmolStr, format_smolstr};
@@ -18,8 +19,6 @@ const LAST_BLOCK: u32 = 254;
 const LAST_STEP: u32 = 1023;
 /// A macro-step has at most 250 steps (PL7:4281).
 const LAST_MACRO_STEP_STEP: u32 = 249;
-/// PL7:4215.
-const LAST_MACRO_STEP: u32 = 63;
 /// First number of the steps of macro-step 0 in [`Area::Steps`]; macro-step n starts n strides later.
 const MACRO_STRIDE: u32 = 1024;
 const STEP_IN: u32 = 1000;
@@ -126,7 +125,7 @@ impl Place {
         if self.ty != Type::Word {
             return Err(malformed("only a single word has bits to extract (PL7:631)"));
         }
-        let rank = rank.within("extracted bit", 0..=15, "PL7:631")?;
+        let rank = rank.of("extracted bit", target::WORD_BITS)?;
         Ok(Self { ty: Type::Bool, start: self.start + rank, extracted: true, room: None, ..self })
     }
 
@@ -292,7 +291,7 @@ fn base(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
         "X" => step(at),
         "XM" => {
             let number = at.need_number("number of the macro-step")?;
-            let number = number.within("macro-step", 0..=LAST_MACRO_STEP, "PL7:4215")?;
+            let number = number.of("macro-step", target::MACRO_STEPS)?;
             Ok(Place::new(Class::MacroStep, Type::Bool, Area::MacroSteps, number, Rights::ReadWrite))
         }
         "NW" => network_word(at),
@@ -395,7 +394,7 @@ fn step(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
         let step = first.within("step", 0..=LAST_STEP, "PL7:1592")?;
         (step, LAST_STEP - step + 1)
     } else {
-        let macro_step = first.within("macro-step", 0..=LAST_MACRO_STEP, "PL7:4215")?;
+        let macro_step = first.of("macro-step", target::MACRO_STEPS)?;
         at.need('.')?;
         let base = MACRO_STRIDE * (macro_step + 1);
         match at.letters() {
@@ -425,9 +424,8 @@ fn step(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
 
 /// `%NW{2.3}1` (PL7:910-912). `%NW2.3`, as PL7:591 prints it, is station and word of network 0.
 fn network_word(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
-    let network = 0..=127;
     let (network, station, word) = if at.eat('{') {
-        let network = at.need_number("network number")?.within("network", network, "PL7:912")?;
+        let network = at.need_number("network number")?.of("network", target::NETWORKS)?;
         at.need('.')?;
         let station = at.need_number("station number")?;
         at.need('}')?;
@@ -437,8 +435,8 @@ fn network_word(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
         at.need('.')?;
         (0, station, at.need_number("word number")?)
     };
-    let station = station.within("station", 0..=31, "PL7:912")?;
-    let word = word.within("common word", 0..=3, "PL7:912")?;
+    let station = station.of("station", target::NETWORK_STATIONS)?;
+    let word = word.of("common word", target::NETWORK_WORDS)?;
     Ok(Place::new(Class::NetworkWord, Type::Word, Area::Network(network, station), word * 16, Rights::ReadWrite))
 }
 
@@ -529,32 +527,32 @@ impl ModulePlace {
         at.rest = channel;
         let module = rack_position(position)?;
         let channel = read_channel(at)?;
-        let rank = read_rank(at, 127, "PL7:756")?;
+        let rank = read_rank(at, target::RANKS)?;
         Ok(Self { bus: Bus::Rack, module, channel, rank })
     }
 
     /// `\0.2.1\0.7` (PL7:783-822): processor position, FIPIO channel, connection point, module, channel.
     fn fipio(position: Number<'_>, link: Number<'_>, at: &mut Cursor<'_>) -> Result<Self, AddressError> {
-        let position = position.within("processor position", 0..=1, "PL7:806")?;
-        link.within("FIPIO channel", 2..=2, "PL7:807")?;
-        let point = at.need_number("connection point")?.within("connection point", 1..=127, "PL7:808")?;
+        let position = position.of("processor position", target::FIPIO_POSITIONS)?;
+        link.of("FIPIO channel", target::FIPIO_LINK)?;
+        let point = at.need_number("connection point")?.of("connection point", target::FIPIO_POINTS)?;
         at.need('\\')?;
-        let module = at.need_number("module")?.within("module", 0..=1, "PL7:809")?;
+        let module = at.need_number("module")?.of("module", target::FIPIO_MODULES)?;
         at.need('.')?;
         let module = format_smolstr!("\\{position}.2.{point}\\{module}");
         let channel = read_channel(at)?;
-        let rank = read_rank(at, 255, "PL7:811")?;
+        let rank = read_rank(at, target::FIPIO_RANKS)?;
         Ok(Self { bus: Bus::Fipio, module, channel, rank })
     }
 
     /// `3.0\2.1` (PL7:836-863): coupler, its only channel, slave, rank of the bit.
     fn as_i(position: Number<'_>, channel: Number<'_>, at: &mut Cursor<'_>) -> Result<Self, AddressError> {
         let coupler = rack_position(position)?;
-        channel.within("channel of an AS-i coupler", 0..=0, "PL7:852")?;
+        channel.of("channel of an AS-i coupler", target::ASI_CHANNELS)?;
         at.need('\\')?;
-        let slave = at.need_number("slave")?.within("AS-i slave", 0..=31, "PL7:853")?;
+        let slave = at.need_number("slave")?.of("AS-i slave", target::ASI_SLAVES)?;
         at.need('.')?;
-        let rank = at.need_number("rank")?.within("AS-i rank", 0..=3, "PL7:854")?;
+        let rank = at.need_number("rank")?.of("AS-i rank", target::ASI_RANKS)?;
         let module = format_smolstr!("\\{coupler}.0\\{slave}");
         Ok(Self { bus: Bus::AsI, module, channel: rank, rank: Rank::None })
     }
@@ -600,17 +598,17 @@ fn rack_position(number: Number<'_>) -> Result<SmolStr, AddressError> {
 
 fn read_channel(at: &mut Cursor<'_>) -> Result<u32, AddressError> {
     if let Some(number) = at.number() {
-        return number.within("channel", 0..=127, "PL7:755");
+        return number.of("channel", target::CHANNELS);
     }
     if at.letters() == "MOD" { Ok(MOD) } else { Err(malformed("the channel is a number or `MOD` (PL7:755)")) }
 }
 
-fn read_rank(at: &mut Cursor<'_>, last: u32, source: &str) -> Result<Rank, AddressError> {
+fn read_rank(at: &mut Cursor<'_>, range: Range) -> Result<Rank, AddressError> {
     if !at.eat('.') {
         return Ok(Rank::None);
     }
     if let Some(number) = at.number() {
-        return number.within("rank", 0..=last, source).map(Rank::Number);
+        return number.of("rank", range).map(Rank::Number);
     }
     if at.letters() == "ERR" { Ok(Rank::Err) } else { Err(malformed("the rank is a number or `ERR` (PL7:756)")) }
 }
@@ -640,7 +638,7 @@ fn module_object(kind: char, ty: Type, at: &mut Cursor<'_>) -> Result<Place, Add
     if is_process && ty == Type::Bool {
         let (start, channel) = (place.bit(), place.channel);
         let has_table = place.rank == Rank::None && channel < MOD;
-        let last = if place.bus == Bus::AsI { 3 } else { 127 };
+        let last = if place.bus == Bus::AsI { target::ASI_RANKS.last } else { target::CHANNELS.last };
         let (class, area) = match kind {
             'I' => (Class::Input, Area::InputChannels(place.module)),
             _ => (Class::Output, Area::OutputChannels(place.module)),

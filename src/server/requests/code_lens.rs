@@ -19,34 +19,35 @@ impl Handle for Handler {
 
     fn handle(snapshot: &Snapshot, params: CodeLensParams) -> Answer<Self::Request> {
         let Some(it) = snapshot.file(&params.text_document.uri) else { return Ok(None) };
-        let Some(program) = *db::program_of(it.db, it.file) else { return Ok(None) };
         if it.file.detected(it.db) == Detected::Stx {
             return Ok(None);
         }
-        let program = InProgram::new(it, program);
-        let index = program.index();
-        let units = db::program_units(it.db, program.program);
         let mut lenses = Vec::new();
-        let mut lens = |range: TextRange, title: String| {
-            let command = Command { title, ..Default::default() };
-            lenses.push(CodeLens { range: it.range(range), command: Some(command), data: None });
-        };
-        for &(unit, offset) in db::layout(it.db, it.file) {
-            let Some(at) = units.iter().position(|other| *other == unit) else { continue };
-            let Some(facts) = index.units.get(at) else { continue };
-            let model = db::model(it.db, unit);
-            let place = |range: TextRange| range + TextSize::new(offset);
-            if is_called(unit.entity(it.db)) {
-                let calls = index.callers.get(at).map_or(0, Vec::len);
-                lens(place(model.heading()), format!("{} in the program", counted(calls, "call")));
-            }
-            let Some(chart) = facts.chart.as_ref().filter(|it| it.defines) else { continue };
-            for step in &chart.steps {
-                let bit = step.name.as_ref().and_then(|it| pl7::parse(&it.bit(chart.graph)).ok());
-                let Some(object) = bit else { continue };
-                let range = place(model.place(step.anchor));
-                let title = uses(object, &index);
-                lens(range, title);
+        for &program in db::programs_of(it.db, it.file) {
+            let program = InProgram::new(it, program);
+            let index = program.index();
+            let units = db::program_units(it.db, program.program);
+            let mut lens = |range: TextRange, title: String| {
+                let command = Command { title, ..Default::default() };
+                lenses.push(CodeLens { range: it.range(range), command: Some(command), data: None });
+            };
+            for &(unit, offset) in db::layout(it.db, it.file) {
+                let Some(at) = units.iter().position(|other| *other == unit) else { continue };
+                let Some(facts) = index.units.get(at) else { continue };
+                let model = db::model(it.db, unit);
+                let place = |range: TextRange| range + TextSize::new(offset);
+                if is_called(unit.entity(it.db)) {
+                    let calls = index.callers.get(at).map_or(0, Vec::len);
+                    lens(place(model.heading()), format!("{} in the program", counted(calls, "call")));
+                }
+                let Some(chart) = facts.chart.as_ref().filter(|it| it.defines) else { continue };
+                for step in &chart.steps {
+                    let bit = step.name.as_ref().and_then(|it| pl7::parse(&it.bit(chart.graph)).ok());
+                    let Some(object) = bit else { continue };
+                    let range = place(model.place(step.anchor));
+                    let title = uses(object, &index);
+                    lens(range, title);
+                }
             }
         }
         Ok(Some(lenses))

@@ -10,6 +10,7 @@ use rustc_hash::FxHashSet;
 use super::{Answer, Handle};
 use crate::analysis::program::ProgramIndex;
 use crate::db;
+use crate::model::dfb::Role;
 use crate::model::object::{Class, Object};
 use crate::model::unit::{Mode, Section};
 use crate::server::cursor::{self, InProgram, InUnit, Named, Target, What};
@@ -125,7 +126,7 @@ fn of_callee(
                 let word = section(declared.section).unwrap_or_default();
                 let _ = write!(out, "\n- {word} `{} : {}`", declared.name, declared.ty);
             }
-            for item in unit.interface.iter().flat_map(|it| &it.items).filter(|it| it.role.is_parameter()) {
+            for item in unit.interface.iter().flat_map(|it| &it.items).filter(|it| is_parameter(it.role)) {
                 let _ = write!(out, "\n- {} `{}`", item.role.describe(), item.name);
             }
         }
@@ -134,6 +135,10 @@ fn of_callee(
         }
     }
     Some(out)
+}
+
+fn is_parameter(role: Role) -> bool {
+    matches!(role, Role::Input | Role::InOut | Role::Output)
 }
 
 fn section(section: Section) -> Option<&'static str> {

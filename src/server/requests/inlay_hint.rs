@@ -6,6 +6,7 @@ use rowan::{TextRange, TextSize};
 use super::{Answer, Handle};
 use crate::db;
 use crate::model::object::Class;
+use crate::server::cursor;
 use crate::server::snapshot::Snapshot;
 use crate::source::detect::Detected;
 
@@ -16,9 +17,7 @@ impl Handle for Handler {
 
     fn handle(snapshot: &Snapshot, params: InlayHintParams) -> Answer<Self::Request> {
         let Some(it) = snapshot.file(&params.text_document.uri) else { return Ok(None) };
-        let Some(program) = *db::program_of(it.db, it.file) else { return Ok(None) };
-        let table = db::symbol_table(it.db, program);
-        if table.is_empty() || it.file.detected(it.db) == Detected::Stx {
+        if it.file.detected(it.db) == Detected::Stx {
             return Ok(None);
         }
         let wanted = it.text_range(params.range);
@@ -26,6 +25,11 @@ impl Handle for Handler {
         for &(unit, offset) in db::layout(it.db, it.file) {
             let all = TextRange::at(offset.into(), TextSize::of(&**unit.text(it.db)));
             if all.intersect(wanted).is_none() {
+                continue;
+            }
+            let Some((program, _)) = cursor::program_with(it, unit) else { continue };
+            let table = db::symbol_table(it.db, program);
+            if table.is_empty() {
                 continue;
             }
             let model = db::model(it.db, unit);

@@ -185,72 +185,17 @@ pub fn of_address(address: &str) -> Option<&'static Block> {
 
 /// Presets of timers, counters and the fast counter (also PL72:748, PL72:799).
 pub const PRESETS: Range = Range::new(0, 9999, "PL72:668");
-/// Current values of counters and of the fast counter (also PL72:800).
-pub const COUNTER_VALUES: Range = Range::new(0, 9999, "PL72:749");
-/// Time bases of timers and drums, in milliseconds, the default first (PL72:667, PL72:897).
-pub const TIME_BASES_MS: [u32; 4] = [60_000, 1_000, 100, 10];
-/// What the fast counter measures as a timer, in microseconds.
-pub const FAST_TIMER_MIN_US: Limit = Limit::new(555, "PL72:446");
-pub const FAST_TIMER_MAX_US: Limit = Limit::new(5_550_000, "PL72:446");
-/// Words of a register; the default is the most.
-pub const REGISTER_LENGTH: Range = Range::new(1, 16, "PL72:713");
-/// Steps of a drum; the default is the most.
-pub const DRUM_STEPS: Range = Range::new(1, 16, "PL72:892");
 /// `Di,S`.
 pub const DRUM_STEP: Range = Range::new(0, 15, "PL72:893");
-/// Bits `Bi` or `Oxy,i` that a drum drives.
-pub const DRUM_ORDER_BITS: Limit = Limit::new(16, "PL72:895");
-/// `Di,V`, in units of the time base.
-pub const DRUM_TIME: Range = Range::new(0, 9999, "PL72:896");
-/// Days of a week block, Monday first.
-pub const CLOCK_DAYS: Range = Range::new(1, 7, "PL72:1272");
-/// `SW58`, minutes of the current day, and `SW59`, its number in the year, both as decimal values.
-pub const MINUTES: Range = Range::new(0, 1439, "PL72:1327");
-pub const DAYS: Range = Range::new(1, 366, "PL72:1328");
-/// Causes of the last stop in `SW57` (PL72:1313-1314).
-pub const STOP_CODES: [(u32, &str); 2] = [(1, "controller stopped"), (4, "power failure")];
 /// Words of `DT` and `DTP`, date and time as characters.
 pub const CLOCK_WORDS: Limit = Limit::new(11, "PL72:1307-1308");
 
-/// An exchange of the simple text block (PL72:1137-1142).
-#[derive(Debug, PartialEq, Eq)]
-pub struct SimpleText {
-    pub name: &'static str,
-    /// The program sends. Then the table may lie in `CWi` too.
-    pub sends: bool,
-    /// The words hold numbers that the device shows as characters.
-    pub converts: bool,
-    /// `TXTi,L`, in bytes.
-    pub length: Range,
-}
-
-pub const TEXT_LENGTH_SIMPLE: Range = Range::new(1, 30, "PL72:1139-1140");
-pub const TEXT_NUMBER_BYTES: Range = Range::new(1, 6, "PL72:1141-1142");
-
-pub static SIMPLE_TEXTS: &[SimpleText] = &[
-    SimpleText { name: "READ", sends: false, converts: false, length: TEXT_LENGTH_SIMPLE },
-    SimpleText { name: "WRITE", sends: true, converts: false, length: TEXT_LENGTH_SIMPLE },
-    SimpleText { name: "READ/NUM", sends: false, converts: true, length: TEXT_NUMBER_BYTES },
-    SimpleText { name: "WRITE/NUM", sends: true, converts: true, length: TEXT_NUMBER_BYTES },
-];
-
 /// Length of the tables of a complete text block, in bytes: reception `[n]` and emission `TXTi,L`.
 pub const TEXT_BYTES: Range = Range::new(0, 30, "PL72:1187-1188");
-/// First word of such a table.
-pub const TEXT_TABLE_START: Range = Range::new(0, 126, "PL72:1186");
 /// `TXTi,T`, and where the partner is programmed with PL7-2 too.
 pub const TEXT_PARTNERS: Range = Range::new(0, 63, "PL72:1202");
-pub const TEXT_PARTNERS_PL7_2: Range = Range::new(0, 7, "PL72:1207");
 /// `TXTi,A`.
 pub const TEXT_STATIONS: Range = Range::new(0, 0xF, "PL72:1203");
-
-/// `TXTi,M` of a TSX 47-20, `H'0x..'`: position of the coupler and its logical address.
-pub const COUPLER_POSITIONS: Range = Range::new(0, 3, "PL72:1216");
-pub const COUPLER_ADDRESSES: Range = Range::new(0, 0x7F, "PL72:1216");
-/// `TXTi,M` of a TSX 17-20, `H'00yy'`: 0 is the master.
-pub const UNI_TELWAY_ADDRESSES: Range = Range::new(0, 0xFD, "PL72:1225");
-/// High byte of `TXTi,C` of a TSX 17-20, `H'07xx'`.
-pub const UNI_TELWAY_REQUEST: Limit = Limit::new(0x07, "PL72:1226");
 
 /// A type of the complete text block (PL72:1156-1161).
 #[derive(Debug, PartialEq, Eq)]
@@ -282,23 +227,6 @@ pub static TEXT_KINDS: &[TextKind] = &[
         items: &["M", "C", "R"],
         source: "PL72:1160-1161",
     },
-];
-
-/// What `TXTi,S` says when `TXTi,E` is 1 (PL72:1148, PL72:1189).
-#[derive(Debug, PartialEq, Eq)]
-pub struct TextError {
-    pub code: u32,
-    pub meaning: &'static str,
-    /// Known of these controllers alone.
-    pub only: &'static [&'static str],
-}
-
-pub static TEXT_ERRORS: &[TextError] = &[
-    TextError { code: 1, meaning: "exchange cancelled by RESET", only: &[] },
-    TextError { code: 2, meaning: "wrong length of a table", only: &[] },
-    TextError { code: 3, meaning: "message refused", only: &["TSX 17-20", "TSX 47-10", "TSX 47-20"] },
-    TextError { code: 7, meaning: "wrong conversion", only: &[] },
-    TextError { code: 11, meaning: "type of text block that is not managed", only: &["TSX 17-20"] },
 ];
 
 #[cfg(test)]
@@ -340,7 +268,7 @@ mod tests {
 
     #[test]
     fn controllers_of_text_blocks_are_known() {
-        let names = TEXT_KINDS.iter().flat_map(|it| it.controllers).chain(TEXT_ERRORS.iter().flat_map(|it| it.only));
+        let names = TEXT_KINDS.iter().flat_map(|it| it.controllers);
         for name in names {
             assert!(CONTROLLERS.iter().any(|it| it.name == *name), "{name}");
         }

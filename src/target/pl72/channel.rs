@@ -127,39 +127,3 @@ pub(super) static CHANNELS_47_20: Channels = Channels {
     words: Some(Range::new(0, 7, "PL72:241")),
     ..channels_47(RACKS_47, MODULES_47)
 };
-
-/// A unit of a TSX 17-20 and its channels (PL72:137-144).
-#[derive(Debug, PartialEq, Eq)]
-pub struct Unit17 {
-    pub kind: UnitKind,
-    /// Inputs, numbered from 0, and outputs.
-    pub inputs: u32,
-    pub outputs: u32,
-    /// With I0,24 and I0,25.
-    pub events: bool,
-    pub source: &'static str,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum UnitKind {
-    Base,
-    ExtensionBlock,
-    ExtensionModule,
-}
-
-const fn unit(kind: UnitKind, inputs: u32, outputs: u32, source: &'static str) -> Unit17 {
-    Unit17 { kind, inputs, outputs, events: matches!(kind, UnitKind::Base), source }
-}
-
-pub static UNITS_17: &[Unit17] = &[
-    unit(UnitKind::Base, 12, 8, "PL72:138"),
-    unit(UnitKind::Base, 22, 12, "PL72:139"),
-    unit(UnitKind::Base, 24, 16, "PL72:140"),
-    unit(UnitKind::ExtensionBlock, 22, 12, "PL72:141"),
-    unit(UnitKind::ExtensionBlock, 24, 16, "PL72:142"),
-    unit(UnitKind::ExtensionModule, 8, 0, "PL72:143"),
-    unit(UnitKind::ExtensionModule, 0, 6, "PL72:144"),
-];
-
-/// Extensions of a TSX 17-20, blocks and modules together: every mix up to this (PL72:108-112).
-pub const EXTENSIONS_17: Limit = Limit::new(3, "PL72:109-112");

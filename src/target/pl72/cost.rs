@@ -174,9 +174,6 @@ pub const NEAR_BITS: Range = Range::new(0, 127, "PL72:1923");
 /// For the comments of networks: one byte a character (PL72:1972-1974).
 pub const NETWORK_COMMENT_BYTES: u32 = 1;
 
-/// Time of a comparison, or of an arithmetic or logic operation, whose line does not conduct (PL72:1976).
-pub const SKIPPED_OPERATION: Cost = Cost::us(2);
-
 const fn row(
     element: Element,
     tsx_17: Option<Cost>,

@@ -7,31 +7,21 @@ mod block;
 mod channel;
 mod cost;
 mod operation;
-mod power;
 mod release;
 mod system;
 
 pub use block::{
-    BLOCKS, Block, BlockKind, CLOCK_DAYS, CLOCK_WORDS, CLOCKS, COUNTER_VALUES, COUPLER_ADDRESSES, COUPLER_POSITIONS,
-    DAYS, DRUM_ORDER_BITS, DRUM_STEP, DRUM_STEPS, DRUM_TIME, FAST_TIMER_MAX_US, FAST_TIMER_MIN_US, MINUTES, PRESETS,
-    Pin, REGISTER_LENGTH, SIMPLE_TEXTS, STOP_CODES, SimpleText, TEXT_BYTES, TEXT_ERRORS, TEXT_KINDS,
-    TEXT_LENGTH_SIMPLE, TEXT_NUMBER_BYTES, TEXT_PARTNERS, TEXT_PARTNERS_PL7_2, TEXT_STATIONS, TEXT_TABLE_START,
-    TIME_BASES_MS, TextError, TextKind, UNI_TELWAY_ADDRESSES, UNI_TELWAY_REQUEST, of_address,
+    BLOCKS, Block, BlockKind, CLOCK_WORDS, CLOCKS, DRUM_STEP, PRESETS, Pin, TEXT_BYTES, TEXT_KINDS, TEXT_PARTNERS,
+    TEXT_STATIONS, TextKind, of_address,
 };
-pub use channel::{
-    Channels, EXTENSIONS_17, Misfit, Modules, RUN_STOP_INPUT, SECURITY_OUTPUT, UNITS_17, Unit17, UnitKind,
-};
+pub use channel::{Channels, Misfit, Modules, RUN_STOP_INPUT, SECURITY_OUTPUT};
 pub use cost::{
-    COSTS, Cost, Element, InstructionCost, NEAR_BITS, NETWORK_COMMENT_BYTES, SKIPPED_OPERATION, SYSTEM_COSTS,
-    SystemCost, SystemTask, TimeRange, Triggered,
+    COSTS, Cost, Element, InstructionCost, NEAR_BITS, NETWORK_COMMENT_BYTES, SYSTEM_COSTS, SystemCost, SystemTask,
+    TimeRange, Triggered,
 };
 pub use operation::{
-    ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARE_COLUMNS, COMPARISONS, OPERATE_COLUMNS,
-    OPERATIONS, Operand, OperandRange, Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
-};
-pub use power::{
-    KEPT_WITHOUT_BATTERY_H, Outage, POWER_FAILURE_LOW_VOLTAGE_MS, POWER_FAILURE_MS, POWER_FAILURES, PowerFailure,
-    power_failure,
+    ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARE_COLUMNS, OPERATE_COLUMNS, OPERATIONS, Operand,
+    OperandRange, Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
 };
 pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
@@ -43,8 +33,6 @@ pub const WATCHDOG_MS: Limit = Limit::new(150, "PL72:477");
 
 /// Labels of networks; each network has one.
 pub const LABELS: Range = Range::new(1, 999, "PL72:600");
-/// Jumps to labels in a program.
-pub const JUMPS: Limit = Limit::new(42, "PL72:418");
 /// Characters of the comment of a network, an action or a receptivity (also PL72:1425, PL72:1481).
 pub const COMMENT_LENGTH: Limit = Limit::new(15, "PL72:601");
 /// Characters of the comment of a step.
@@ -56,15 +44,11 @@ pub const LADDER_CONTACTS: Limit = Limit::new(9, "PL72:606");
 pub const LADDER_COLUMNS: Limit = Limit::new(LADDER_CONTACTS.value + 1, "PL72:606-607");
 /// Columns of a block whose size the document does not tell: those of all others.
 pub const BLOCK_COLUMNS: Limit = Limit::new(2, "PL72:662");
-/// Coils of a network, one a line.
-pub const LADDER_COILS: Limit = Limit::new(4, "PL72:607");
 
 /// `Wi` and `CWi` that an instruction reaches directly; the others, by transfer of a table alone.
 pub const DIRECT_WORDS: Range = Range::new(0, 127, "PL72:289");
 /// Words of a page of the memory of `Wi` or `CWi` (PL72:1092-1101).
 pub const PAGE_WORDS: Limit = Limit::new(128, "PL72:1094-1101");
-/// Pages of `Wi` or `CWi`.
-pub const PAGES: Limit = Limit::new(8, "PL72:1092");
 /// Words that can be indexed.
 pub const INDEXED_WORDS: Range = Range::new(0, 127, "PL72:994");
 
@@ -96,12 +80,6 @@ pub const DESTINATION_CONNECTORS: Limit = Limit::new(42, "PL72:1393");
 pub const ORIGIN_CONNECTORS: Limit = Limit::new(42, "PL72:1397");
 /// Transitions after an OR divergence, and before an OR convergence.
 pub const OR_BRANCHES_OUT: Limit = Limit::new(4, "PL72:1373");
-pub const OR_BRANCHES_IN: Limit = Limit::new(4, "PL72:1374");
-/// Steps after an AND divergence, and before an AND convergence.
-pub const AND_BRANCHES_OUT: Limit = Limit::new(4, "PL72:1382");
-pub const AND_BRANCHES_IN: Limit = Limit::new(4, "PL72:1383");
-/// Actions of a step that are programmed in the step itself.
-pub const STEP_ACTIONS: Limit = Limit::new(4, "PL72:1428");
 /// Times of steps, in seconds (also PL72:1793).
 pub const STEP_TIMES_S: Range = Range::new(0, 9999, "PL72:1451");
 pub const STEP_TIME_UNIT_MS: Limit = Limit::new(1000, "PL72:1451");
@@ -172,9 +150,6 @@ impl Series {
         self as usize
     }
 }
-
-/// Objects of coils that keep their state at a warm start, where the configuration says so (PL72:410-412).
-pub const SAVED_COILS: [Kind; 2] = [Kind::Output, Kind::Bit];
 
 /// Kinds of objects that the tables count (PL72:255-310).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -618,7 +593,6 @@ mod tests {
         assert!(matches!(small.misfit(true, None, 2, 8), Some(Misfit::Channel(it)) if it.source == "PL72:176"));
         assert_eq!((large.misfit(true, Some(1), 7, 15), large.misfit(false, None, 7, 15)), (None, None));
         assert!(matches!(compact.misfit(true, Some(1), 0, 0), Some(Misfit::Rack(it)) if it.source == "PL72:206"));
-        assert!(UNITS_17.iter().all(|it| it.inputs <= micro.inputs.last + 1 && it.outputs <= micro.outputs.last + 1));
     }
 
     #[test]

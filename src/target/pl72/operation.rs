@@ -144,9 +144,6 @@ pub static OPERATIONS: &[Operation] = &[
     rotation("SRC"),
 ];
 
-/// Signs of a comparison block; the second operand may be a value (PL72:956-958).
-pub const COMPARISONS: [&str; 6] = [">", "<", "=", ">=", "<=", "<>"];
-
 /// A transfer that the table names. Nothing else may be transferred.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transfer {

@@ -1,0 +1,191 @@
+//! Code in a few words, as it stands beside a step or a transition.
+
+use std::fmt::Write as _;
+
+use crate::model::UnitModel;
+use crate::model::expr::{Expr, ExprId, Operator};
+use crate::model::unit::{Pin, StatementKind};
+use crate::syntax::pl7::ast::Sentence;
+use crate::syntax::{AstNode as _, SyntaxKind, SyntaxNode};
+
+/// The text of a comment, without what encloses it.
+pub(super) fn comment(text: &str) -> Option<&str> {
+    let text = text.trim_start_matches("(*").trim_end_matches("*)").trim();
+    (!text.is_empty()).then_some(text)
+}
+
+/// The first comment among a node's own tokens.
+pub(super) fn own_comment(node: SyntaxNode<'_>) -> Option<&str> {
+    node.tokens().filter(|it| it.kind() == SyntaxKind::Comment).find_map(|it| comment(it.text()))
+}
+
+/// The code of a node, comments left out, each line with single blanks.
+pub(super) fn code(node: SyntaxNode<'_>) -> String {
+    let mut out = String::new();
+    let mut is_start = true;
+    let mut has_blank = false;
+    for token in node.descendant_tokens() {
+        match token.kind() {
+            SyntaxKind::Newline => is_start = true,
+            // What begins a sentence says nothing here.
+            SyntaxKind::SentenceStart | SyntaxKind::SentenceEnd | SyntaxKind::Bang => has_blank = true,
+            kind if kind.is_trivia() => has_blank = true,
+            _ => {
+                if is_start && !out.is_empty() {
+                    out.push('\n');
+                } else if has_blank && !is_start {
+                    out.push(' ');
+                }
+                (is_start, has_blank) = (false, false);
+                out.push_str(token.text());
+            }
+        }
+    }
+    out
+}
+
+/// The code of sentences, one under the other.
+pub(super) fn sentences<'t>(sentences: impl Iterator<Item = Sentence<'t>>) -> String {
+    let texts = sentences.map(|it| code(it.syntax()));
+    texts.filter(|it| !it.is_empty()).collect::<Vec<_>>().join("\n")
+}
+
+/// What statements of rungs do, with the anchors that say where, in their order.
+pub(super) fn statements(model: &UnitModel) -> Vec<(u32, String)> {
+    let mut found = Vec::new();
+    for it in &model.statements {
+        let access = match it.kind {
+            StatementKind::Assign { access, .. }
+            | StatementKind::Set { access, .. }
+            | StatementKind::Reset { access, .. }
+            | StatementKind::Store { access, .. }
+            | StatementKind::Drive { access, .. } => model.accesses.get(access as usize),
+            _ => None,
+        };
+        let name = || access.map_or_else(String::new, |it| model.object(it.object).text.to_string());
+        let when = |text: String, when: ExprId| match model.exprs.get(when) {
+            Expr::Bool(true) => text,
+            _ => format!("{text} when {}", condition(model, when)),
+        };
+        let (anchor, text) = match it.kind {
+            StatementKind::Assign { value, .. } | StatementKind::Store { value, .. } => {
+                (access.map(|it| it.anchor), format!("{} := {}", name(), condition(model, value)))
+            }
+            StatementKind::Set { when: it, .. } => (access.map(|it| it.anchor), when(format!("SET {}", name()), it)),
+            StatementKind::Reset { when: it, .. } => {
+                (access.map(|it| it.anchor), when(format!("RESET {}", name()), it))
+            }
+            StatementKind::Drive { pin, when: it, .. } => {
+                let pin = if pin == Pin::Whole { String::new() } else { format!(" {}", pin.describe()) };
+                (access.map(|it| it.anchor), when(format!("{}{pin}", name()), it))
+            }
+            StatementKind::Call(at) => match model.calls.get(at as usize) {
+                Some(call) => (Some(call.anchor), when(call.text.to_string(), call.when)),
+                None => continue,
+            },
+            _ => continue,
+        };
+        found.extend(anchor.map(|it| (it, text)));
+    }
+    found.sort_by_key(|it| it.0);
+    found
+}
+
+/// A condition or value, written out as far as it is short.
+pub(super) fn condition(model: &UnitModel, id: ExprId) -> String {
+    let mut writer = Writer { model, out: String::new(), left: MOST };
+    writer.write(id, 0, 0);
+    writer.out
+}
+
+/// Parts of an expression that are written, and how deep they may lie.
+const MOST: u32 = 80;
+const DEEPEST: u32 = 40;
+
+struct Writer<'a> {
+    model: &'a UnitModel,
+    out: String,
+    left: u32,
+}
+
+impl Writer<'_> {
+    /// `strength`: how strongly the operator around it binds.
+    fn write(&mut self, id: ExprId, strength: u8, depth: u32) {
+        if self.left == 0 || depth > DEEPEST {
+            self.out.push('…');
+            return;
+        }
+        self.left -= 1;
+        let model = self.model;
+        let name = |object| model.object(object).text.as_str();
+        match model.exprs.get(id) {
+            Expr::Bool(value) => self.out.push_str(if *value { "TRUE" } else { "FALSE" }),
+            Expr::Int(value) => {
+                let _ = write!(self.out, "{value}");
+            }
+            Expr::Float(bits) => {
+                let _ = write!(self.out, "{}", f64::from_bits(*bits));
+            }
+            Expr::Text(text) => self.out.push_str(text),
+            Expr::Read { object, .. } => self.out.push_str(name(*object)),
+            Expr::Edge { object, rising, .. } => {
+                self.out.push_str(if *rising { "RE " } else { "FE " });
+                self.out.push_str(name(*object));
+            }
+            Expr::Not(it) => {
+                self.out.push_str("NOT ");
+                self.write(*it, 4, depth + 1);
+            }
+            Expr::Negate(it) => {
+                self.out.push('-');
+                self.write(*it, 7, depth + 1);
+            }
+            Expr::Or(a, b) => self.pair(" OR ", 1, strength, (*a, *b), depth),
+            Expr::Xor(a, b) => self.pair(" XOR ", 2, strength, (*a, *b), depth),
+            Expr::And(a, b) => self.pair(" AND ", 3, strength, (*a, *b), depth),
+            Expr::Compare(comparison, a, b) => self.pair(comparison.as_str(), 5, strength, (*a, *b), depth),
+            Expr::Binary(operator, a, b) => {
+                let (text, own) = match operator {
+                    Operator::Add => ("+", 6),
+                    Operator::Sub => ("-", 6),
+                    Operator::Mul => ("*", 7),
+                    Operator::Div => ("/", 7),
+                    Operator::Rem => (" REM ", 7),
+                    Operator::And => (" AND ", 5),
+                    Operator::Or => (" OR ", 5),
+                    Operator::Xor => (" XOR ", 5),
+                    Operator::Shift | Operator::Other => {
+                        self.out.push('…');
+                        return;
+                    }
+                };
+                self.pair(text, own, strength, (*a, *b), depth);
+            }
+            Expr::Call(name, arguments) => {
+                self.out.push_str(name);
+                self.out.push('(');
+                for (at, it) in arguments.iter().enumerate() {
+                    if at > 0 {
+                        self.out.push(',');
+                    }
+                    self.write(*it, 0, depth + 1);
+                }
+                self.out.push(')');
+            }
+            Expr::Opaque(_) => self.out.push('…'),
+        }
+    }
+
+    fn pair(&mut self, text: &str, own: u8, strength: u8, (a, b): (ExprId, ExprId), depth: u32) {
+        let is_enclosed = own < strength;
+        if is_enclosed {
+            self.out.push('(');
+        }
+        self.write(a, own, depth + 1);
+        self.out.push_str(text);
+        self.write(b, own, depth + 1);
+        if is_enclosed {
+            self.out.push(')');
+        }
+    }
+}
