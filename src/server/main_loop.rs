@@ -498,11 +498,7 @@ impl Server {
         self.revision += 1;
         self.add_folders(params.event.added.into_iter().map(|it| it.uri).collect());
         // What was outside may be inside of a folder now, and the other way round.
-        self.roots.retain(|it| it.folder.is_some());
-        let open: Vec<String> = self.documents.keys().filter(|it| !is_config(it)).cloned().collect();
-        for path in open {
-            self.shown(&path);
-        }
+        self.place_outsiders();
         let folders: Vec<usize> = (0..self.roots.len()).filter(|&at| self.roots[at].folder.is_some()).collect();
         folders.into_iter().for_each(|at| self.start_load(at));
         self.tell_configs();
@@ -528,9 +524,28 @@ impl Server {
         depths.max().map(|it| it.1)
     }
 
+    /// Finds the configurations of documents outside of all folders anew.
+    fn place_outsiders(&mut self) {
+        self.roots.retain(|it| it.folder.is_some());
+        let open: Vec<(String, Arc<str>)> =
+            self.documents.iter().map(|(path, it)| (path.clone(), it.text.clone())).collect();
+        for (path, text) in open {
+            if !is_config(&path) && self.folder_of(&path).is_none() {
+                let at = self.root_of(&path);
+                if let Some(root) = self.roots.get_mut(at) {
+                    root.show(&path, &text);
+                    root.list();
+                }
+            }
+        }
+    }
+
     /// The root of a document; made for one outside of all folders.
     fn root_of(&mut self, path: &str) -> usize {
         if let Some(at) = self.folder_of(path) {
+            return at;
+        }
+        if let Some(at) = self.roots.iter().position(|it| it.folder.is_none() && it.knows(path)) {
             return at;
         }
         let id = self.number();
@@ -552,19 +567,12 @@ impl Server {
     fn reload_configs(&mut self, path: &str) {
         let folder = Path::new(path).parent().unwrap_or(Path::new("")).to_owned();
         for at in 0..self.roots.len() {
-            match &self.roots[at].folder {
-                // It may lie above the folder, and anything in the folder is none of its business.
-                Some(own) if own.starts_with(&folder) => self.start_load(at),
-                Some(_) => {}
-                None => {
-                    let files = self.snapshot().roots.get(at).map(|it| it.files.clone()).unwrap_or_default();
-                    if let Some(file) = files.keys().next().cloned() {
-                        let configs = self.open_configs();
-                        self.roots[at].reload_config(&file, configs, &self.documents);
-                    }
-                }
+            // It may lie above the folder; what lies deeper in the folder is none of its business.
+            if self.roots[at].folder.as_ref().is_some_and(|own| own.starts_with(&folder)) {
+                self.start_load(at);
             }
         }
+        self.place_outsiders();
         self.tell_configs();
     }
 
@@ -620,9 +628,6 @@ impl Server {
         self.cold.push((self.roots[at].id, self.abilities.progress.then_some(token)));
         self.tell_configs();
         self.client.refresh(&self.abilities);
-        if self.roots.iter().all(|it| it.loading.is_none()) {
-            std::mem::take(&mut self.deferred).into_iter().for_each(|it| self.dispatch(it));
-        }
     }
 
     fn end_progress(&self, token: &str) {
@@ -680,10 +685,11 @@ impl Server {
 
     /// All messages are in: asks for the findings of what they made.
     fn flush(&mut self) {
-        if self.stage != Stage::Running || self.flushed == self.revision {
+        if self.stage != Stage::Running || self.roots.iter().any(|it| it.loading.is_some()) {
             return;
         }
-        if self.roots.iter().any(|it| it.loading.is_some()) {
+        std::mem::take(&mut self.deferred).into_iter().for_each(|it| self.dispatch(it));
+        if self.flushed == self.revision {
             return;
         }
         self.flushed = self.revision;

@@ -137,23 +137,13 @@ impl Root {
         self.files.values().any(|it| it.listed)
     }
 
+    pub(super) fn knows(&self, path: &str) -> bool {
+        self.files.contains_key(path)
+    }
+
     /// Whether the file is one that the folder's walk found.
     pub(super) fn found(&self, path: &str) -> bool {
         self.files.get(path).is_some_and(|it| it.found)
-    }
-
-    /// Reads the configuration of files outside of any folder anew.
-    pub(super) fn reload_config(&mut self, path: &str, configs: Vec<(PathBuf, String)>, documents: &Documents) {
-        let (config, settings) = settings(Path::new(path), configs);
-        self.config = config;
-        self.take_settings(settings);
-        let open: Vec<String> = self.files.keys().filter(|it| documents.contains_key(*it)).cloned().collect();
-        for path in open {
-            if let Some(document) = documents.get(&path) {
-                self.show(&path, &document.text);
-            }
-        }
-        self.list();
     }
 
     fn take_settings(&mut self, settings: Result<Settings, WrongConfig>) {

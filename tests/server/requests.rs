@@ -524,7 +524,7 @@ fn every_question_has_an_answer() {
             }
             let position = json!({ "line": line, "character": start + 1 });
             for method in ["hover", "definition", "references", "documentHighlight", "completion", "prepareRename"] {
-                let context = json!({ "includeDeclaration": true });
+                let context = json!({ "includeDeclaration": true, "triggerKind": 1 });
                 let params = json!({ "textDocument": document, "position": position, "context": context });
                 let answer = client.ask(&format!("textDocument/{method}"), params);
                 answered += usize::from(!answer.is_null());
