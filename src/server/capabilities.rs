@@ -41,7 +41,7 @@ pub(super) fn server(client: &Abilities) -> InitializeResult {
     let capabilities = ServerCapabilities {
         position_encoding: Some(client.encoding.kind()),
         text_document_sync: Some(TextDocumentSync::Options(sync)),
-        diagnostic_provider: client.pulls.then(|| DiagnosticProvider::DiagnosticOptions(diagnostics)),
+        diagnostic_provider: client.pulls.then_some(DiagnosticProvider::DiagnosticOptions(diagnostics)),
         workspace: Some(workspace),
         code_action_provider: Some(CodeActionProvider::CodeActionOptions(CodeActionOptions {
             code_action_kinds: Some(vec![CodeActionKind::QuickFix, CodeActionKind::SourceFixAll]),

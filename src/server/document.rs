@@ -51,6 +51,7 @@ mod tests {
 
     fn partial(from: (u32, u32), to: (u32, u32), text: &str) -> Change {
         let range = Range::new(Position::new(from.0, from.1), Position::new(to.0, to.1));
+        #[expect(deprecated, reason = "the field is there and has no default")]
         Change::from(TextDocumentContentChangePartial { range, range_length: None, text: text.to_owned() })
     }
 

@@ -371,10 +371,8 @@ impl Server {
         }
         let Notification { method, params } = it;
         match method.as_str() {
-            "initialized" => {
-                if self.abilities.watches_files {
-                    self.client.request::<lsp::RegistrationRequest>(capabilities::watched_files());
-                }
+            "initialized" if self.abilities.watches_files => {
+                self.client.request::<lsp::RegistrationRequest>(capabilities::watched_files());
             }
             "$/cancelRequest" => {
                 let id = params.get("id").cloned().and_then(|it| serde_json::from_value(it).ok());

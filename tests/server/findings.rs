@@ -126,7 +126,6 @@ fn a_question_about_all_files_waits_for_news() {
     client.ask("shutdown", Value::Null);
     client.notify("exit", Value::Null);
     assert_eq!(client.ended(), Ended::Properly);
-
 }
 
 #[test]

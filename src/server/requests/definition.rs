@@ -38,7 +38,7 @@ impl Handle for Handler {
             },
         };
         let locations: Vec<Location> = found.into_iter().filter_map(|it_| it.root.location(snapshot, it_)).collect();
-        Ok((!locations.is_empty()).then(|| DefinitionResponse::Definition(Definition::LocationList(locations))))
+        Ok((!locations.is_empty()).then_some(DefinitionResponse::Definition(Definition::LocationList(locations))))
     }
 }
 

@@ -54,7 +54,7 @@ impl Handle for Handler {
         parts.extend(rules(&it, at));
         let range = range.map(|range| it.range(range));
         let value = parts.join("\n\n---\n\n");
-        Ok((!value.is_empty()).then(|| Hover {
+        Ok((!value.is_empty()).then_some(Hover {
             contents: Contents::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value }),
             range,
         }))

@@ -48,7 +48,7 @@ impl Handle for Handler {
                 hints.extend(other.map(|it| (range, it.to_string())));
             }
         }
-        hints.sort_by(|a, b| (a.0.start(), a.0.end()).cmp(&(b.0.start(), b.0.end())));
+        hints.sort_by_key(|it| (it.0.start(), it.0.end()));
         hints.dedup();
         let hints = hints.into_iter().map(|(range, name)| InlayHint {
             position: it.range(range).end,
