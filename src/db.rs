@@ -276,6 +276,7 @@ fn unit_family(db: &dyn Db, unit: Unit<'_>) -> Option<Family> {
     match unit.language(db) {
         Language::Exchange => family(unit.file(db).detected(db)),
         Language::Awl(_) => Some(Family::Step7),
+        Language::Step5(_) | Language::Step5Symbols => Some(Family::Step5),
         language if language.is_pl7_2() => Some(Family::Pl72),
         _ => Some(Family::Pl7),
     }
@@ -310,7 +311,7 @@ fn is_application(db: &dyn Db, file: SourceFile, family: Family) -> bool {
 /// Whether a file declares variables beside or without code: it belongs to the code around it.
 #[salsa::tracked]
 fn declares_variables(db: &dyn Db, file: SourceFile) -> bool {
-    let mut declaring = units(db, file).iter().filter(|it| it.language(db) == Language::Exchange);
+    let mut declaring = units(db, file).iter().filter(|it| it.language(db).declares_symbols());
     declaring.any(|&it| !facts(db, it).symbols.is_empty())
 }
 
@@ -387,6 +388,7 @@ pub fn family(detected: Detected) -> Option<Family> {
     match detected {
         Detected::Exchange | Detected::Pasted(_) | Detected::Stx => Some(Family::Pl7),
         Detected::Pl72 | Detected::Pl72Exchange => Some(Family::Pl72),
+        Detected::Step5 | Detected::Step5Symbols => Some(Family::Step5),
         Detected::Step7 => Some(Family::Step7),
         _ => None,
     }
@@ -409,7 +411,7 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
 /// What the symbols of a program name. It has no places.
 #[salsa::tracked]
 pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
-    let declaring = program_units(db, program).iter().filter(|it| it.language(db) == Language::Exchange);
+    let declaring = program_units(db, program).iter().filter(|it| it.language(db).declares_symbols());
     SymbolTable::new(program.family(db), declaring.map(|&unit| &**facts(db, unit)))
 }
 
@@ -1050,7 +1052,7 @@ fn untargeted(db: &dyn Db, files: &[SourceFile], active: &[&Rule]) -> Vec<Family
     let settings = db.project().settings(db);
     let asks = |family: Family| active.iter().any(|it| it.by_controller && it.is_for_family(family));
     let read = files.iter().filter(|&&it| named_controller(db, it).is_none()).map(|&it| families(db, it));
-    let mut families = vec![Family::Pl7, Family::Pl72, Family::Step7];
+    let mut families = vec![Family::Pl7, Family::Pl72, Family::Step5, Family::Step7];
     families.retain(|&it| {
         settings.target(it).controller().is_none() && asks(it) && read.clone().any(|of| of.contains(&it))
     });
@@ -1060,7 +1062,8 @@ fn untargeted(db: &dyn Db, files: &[SourceFile], active: &[&Rule]) -> Vec<Family
 /// Bytes of tokens that the syntax could not place.
 fn not_understood(language: Language, parse: &Parse) -> usize {
     // What is unknown between the programs of an exchange file, or in a vendor's table, is no mistake.
-    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Pl7Xref) {
+    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Step5Symbols | Language::Pl7Xref)
+    {
         return 0;
     }
     let root = parse.syntax();
@@ -1089,6 +1092,9 @@ fn dialect_name(db: &dyn Db, file: SourceFile) -> String {
         (_, Some(Language::Pl72Gr7)) => "PL7-2 Grafcet".to_owned(),
         (_, Some(Language::Pl72Sfc)) => "PL7-2, textual SFC".to_owned(),
         (Detected::Pl72, _) => "PL7-2".to_owned(),
+        (Detected::Step5Symbols, _) => "STEP 5 symbols".to_owned(),
+        (_, Some(Language::Step5(syntax::Mnemonics::German))) => "STEP 5, German mnemonics".to_owned(),
+        (_, Some(Language::Step5(syntax::Mnemonics::English))) => "STEP 5, English mnemonics".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::German))) => "STEP 7 AWL, German mnemonics".to_owned(),
         (_, Some(Language::Awl(syntax::Mnemonics::English))) => "STEP 7 AWL, English mnemonics".to_owned(),
         (_, Some(Language::Pl7Il)) => "PL7 instruction list".to_owned(),

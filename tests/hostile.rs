@@ -166,7 +166,7 @@ fn odd_files() {
         b"U E 0.0; ".repeat(100_000),
         b"%M0 := %M1; ".repeat(50_000),
     ] {
-        for dialect in [Dialect::Auto, Dialect::Step7, Dialect::Pl7St] {
+        for dialect in [Dialect::Auto, Dialect::Step7, Dialect::Step5, Dialect::Pl7St] {
             check(&bytes, dialect, None);
         }
     }
@@ -183,6 +183,7 @@ fn lines_of_ten_megabytes() {
         ("RUNG COIL(%M0); ", syntax::Language::Pl7Ld),
         ("COMPARE ( ,; ", syntax::Language::Pl7Ld),
         ("RUNG COIL(W5(W1)); ", syntax::Language::Pl72Ld),
+        ("U E 0.0 = ( ", syntax::Language::Step5(mnemonics)),
         ("OPERATE W1 + -> ", syntax::Language::Pl72Ld),
     ] {
         let text = line.repeat(10_000_000 / line.len());
@@ -194,12 +195,15 @@ fn lines_of_ten_megabytes() {
 /// catches is quadratic growth, which shows as a factor of 16 and more.
 #[test]
 fn time_is_linear() {
-    let shapes: [(&str, Dialect); 21] = [
+    let shapes: [(&str, Dialect); 24] = [
         ("U(\nU E 0.0\n)\n= A 4.0\n", Dialect::Step7),
         ("U E 0.0\nO M 1.0\n", Dialect::Step7),
         ("L MW 2\nL 5\n+I\nT MW 4\n", Dialect::Step7),
         ("U E 0.0\nSPB M1\nM2: NOP 0\n", Dialect::Step7),
         ("U E 0.0\n= M 0.0\nU M 0.0\n= A 4.0\n", Dialect::Step7),
+        ("PB #\n:U E 0.0\n:= A 4.0\n:***\n:BE\n", Dialect::Step5),
+        (":SPA FB 5\nNAME :X\nEIN :E 0.0\n", Dialect::Step5),
+        ("M# :U( :O t# O X3 ) = M 1.0 ***\n", Dialect::Step5),
         ("! %M0 := %M1 OR %M2;\n", Dialect::Pl7St),
         ("! IF %M0 THEN %MW1 := %MW2 + 1; END_IF;\n", Dialect::Pl7St),
         ("! LD %M0\nOR %M1\nST %M2\n", Dialect::Pl7Il),

@@ -8,7 +8,7 @@ use crate::model::unit::DeadCause;
 use crate::syntax::Language;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let blocks = matches!(cx.model.language, Language::Awl(_));
+    let blocks = cx.model.language.is_statement_list();
     // In these languages, a condition that cuts code off is a finding of its own.
     let has_texts = !blocks && !matches!(cx.model.language, Language::Pl7Ld | Language::Pl72Ld);
     let is_cut = has_texts && !cx.model.unreachable.is_empty();

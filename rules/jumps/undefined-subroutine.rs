@@ -5,8 +5,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::analysis::Site;
 use crate::analysis::program::{GlobalCall, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
-use crate::model::entity::{BlockKind, BlockName};
+use crate::model::entity::{BlockKind, BlockName, Family};
 use crate::model::unit::Callee;
+use crate::target::step5;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !cx.program.has_main() || cx.program.partial {
@@ -37,6 +38,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// How the program names its subroutines and blocks. It may name a block by its number here and by its symbol there,
 /// which only the symbol table ties.
 struct Names {
+    family: Family,
     defined: usize,
     /// Blocks whose instance data is there: they were there when it was made.
     instances: FxHashSet<BlockName>,
@@ -46,11 +48,17 @@ struct Names {
 
 impl Names {
     fn new(program: &ProgramIndex<'_>) -> Self {
-        let mut names = Self { defined: 0, instances: FxHashSet::default(), by_number: false, by_symbol: false };
+        let mut names = Self {
+            family: program.family,
+            defined: 0,
+            instances: FxHashSet::default(),
+            by_number: false,
+            by_symbol: false,
+        };
         for facts in &program.units {
             let entity = &facts.entity;
             names.instances.extend(facts.instance_of.clone());
-            if entity.subroutine().is_some() || matches!(entity.block_kind(), Some(BlockKind::Fb | BlockKind::Fc)) {
+            if entity.subroutine().is_some() || entity.block_kind().is_some_and(BlockKind::is_callable) {
                 names.defined += 1;
                 names.by_number |= matches!(entity.name(), Some(BlockName::Number(..)));
                 names.by_symbol |= matches!(entity.name(), Some(BlockName::Symbol(_)));
@@ -64,7 +72,8 @@ impl Names {
         match callee {
             Callee::Subroutine(_) => true,
             Callee::Block(name) if self.instances.contains(name) => false,
-            Callee::Block(BlockName::Number(BlockKind::Fb | BlockKind::Fc, _)) => !self.by_symbol,
+            Callee::Block(name) if self.family == Family::Step5 && step5::is_function(name) => false,
+            Callee::Block(BlockName::Number(kind, _)) if kind.is_callable() => !self.by_symbol,
             Callee::Block(BlockName::Symbol(_)) => !self.by_number,
             _ => false,
         }

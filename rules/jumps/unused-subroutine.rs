@@ -20,8 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let typed = used_as_type(program);
     for (unit, facts) in (0_u32..).zip(&program.units) {
         let entity = &facts.entity;
-        let callable =
-            entity.subroutine().is_some() || matches!(entity.block_kind(), Some(BlockKind::Fb | BlockKind::Fc));
+        let callable = entity.subroutine().is_some() || entity.block_kind().is_some_and(BlockKind::is_callable);
         let as_type = entity.name().is_some_and(|it| typed.contains(&type_key(&it.to_string())));
         if callable && !as_type && !called.contains(&unit) {
             sink.report(ProgramIndex::heading(unit), format!("nothing calls {entity}"));

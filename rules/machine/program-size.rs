@@ -9,7 +9,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     match cx.program.family {
         Family::Pl72 => bytes(cx, sink),
         Family::Pl7 => instructions(cx, sink),
-        Family::Step7 => {}
+        Family::Step5 | Family::Step7 => {}
     }
 }
 

@@ -49,7 +49,7 @@ fn kind(entity: &Entity) -> Option<&'static str> {
         Entity::Pl7 { part: Part::Main | Part::Preliminary | Part::Posterior, .. } => "section",
         Entity::Pl7 { part: Part::Event, .. } => "event",
         Entity::Dfb { .. } => "DFB",
-        Entity::Block { kind: BlockKind::Ob | BlockKind::Fb | BlockKind::Fc, .. } => "block",
+        Entity::Block { kind, .. } if *kind == BlockKind::Ob || kind.is_callable() => "block",
         _ => return None,
     })
 }

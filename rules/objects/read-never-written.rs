@@ -3,7 +3,6 @@
 use crate::analysis::Site;
 use crate::analysis::program::{GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Severity, Sink};
-use crate::model::entity::Family;
 use crate::model::object::{Area, Class};
 use crate::model::unit::Mode;
 
@@ -24,7 +23,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 && !given.iter().any(|byte| covers(*byte, uses))
         });
         for group in unwritten.chunk_by(|&a, &b| same_byte(cx, a, b)) {
-            let others = if program.family == Family::Step7 {
+            let others = if program.family.has_blocks() {
                 "no operator panel, other station or clock byte of the CPU"
             } else {
                 "no operator panel or other station"

@@ -22,7 +22,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             (asks, "`%S0` tells a cold start, `%S1` a warm one, `%SW10:X0` the first cycle after a cold start")
         }
         Family::Pl72 => (asks_pl7_2, "`SY00` tells a cold start, `SY01` a warm one; `SY09` resets the outputs"),
-        Family::Step7 => return,
+        Family::Step5 | Family::Step7 => return,
     };
     if is_project || !program.complete || program.objects.iter().any(asks) {
         return;

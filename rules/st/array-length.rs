@@ -7,10 +7,10 @@ use crate::model::object::Type;
 use crate::model::pl7_tables::{self, Misfit};
 use crate::model::unit::Mode;
 use crate::syntax::pl7::ast::{AssignStmt, BinExpr, CallExpr};
-use crate::syntax::{AstNode, Language, SyntaxKind};
+use crate::syntax::{AstNode, SyntaxKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let is_awl = matches!(cx.model.language, Language::Awl(_));
+    let is_awl = cx.model.language.is_statement_list();
     if is_awl || !cx.model.objects.iter().any(|it| it.ty.is_table()) {
         return;
     }

@@ -4,10 +4,9 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::unit::OddityKind;
-use crate::syntax::Language;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    if matches!(cx.model.language, Language::Awl(_)) {
+    if cx.model.language.is_statement_list() {
         return;
     }
     for oddity in &cx.model.oddities {

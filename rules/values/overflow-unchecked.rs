@@ -16,7 +16,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         Family::Pl72 => {
             (OVERFLOW_UNSIGNED, "`SY18` says so, of numbers without a sign `SY17`; the program resets them")
         }
-        Family::Step7 => return,
+        Family::Step5 | Family::Step7 => return,
     };
     if !program.complete {
         return;

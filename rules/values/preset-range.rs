@@ -31,7 +31,7 @@ fn stored(cx: &ProgramCx<'_>, object: &Object, value: i64) -> Option<String> {
     let is_preset = match family {
         Family::Pl7 => pl7::is_preset(object),
         Family::Pl72 => pl72::is_preset(object),
-        Family::Step7 => false,
+        Family::Step5 | Family::Step7 => false,
     };
     if !is_preset {
         return None;
@@ -48,7 +48,7 @@ fn loaded(cx: &ProgramCx<'_>, object: &Object, value: i64) -> Option<String> {
     if object.class != Class::Counter {
         return None;
     }
-    let (what, _) = counts::number(Family::Step7, object)?;
+    let (what, _) = counts::number(cx.target.family(), object)?;
     let range = cx.target.preset(what)?;
     // A count that fits is taken as one: the model does not tell `C#250` from `250`.
     let counts = u32::try_from(value).is_ok_and(|it| range.contains(it));

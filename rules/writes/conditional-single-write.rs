@@ -45,7 +45,7 @@ fn lone_assignment<'a>(cx: &ProgramCx<'_>, uses: &ObjectUses<'a>) -> Option<(u32
     let computes = uses.with_mode(Mode::writes).any(|it| it.it.constant.is_none() && !it.it.holds);
     // In ladder, what a jump leads past shows.
     let language = cx.program.units[first.unit as usize].language;
-    let is_text = matches!(language, Language::Awl(_) | Language::Pl7Il | Language::Pl7St);
+    let is_text = matches!(language, Language::Awl(_) | Language::Step5(_) | Language::Pl7Il | Language::Pl7St);
     let is_lone = is_plain(first) && writes.all(is_plain) && computes && is_text && !in_chart;
     Some((cx.program.missed(first).filter(|_| is_lone)?, *first))
 }

@@ -45,9 +45,9 @@ pub fn number(family: Family, object: &Object) -> Option<(Counted, u32)> {
         (Family::Pl72, Area::SystemBits) => (Counted::SystemBits, last),
         (Family::Pl72, Area::SystemWords) => (Counted::SystemWords, last / 16),
         (Family::Pl72, Area::Block(symbol, number)) => (pl72::block_of_symbol(symbol)?, *number),
-        (Family::Step7, Area::Words) => (Counted::Bytes, last / 8),
-        (Family::Step7, Area::Timers) => (Counted::Timers, last),
-        (Family::Step7, Area::Counters) => (Counted::Counters, last),
+        (Family::Step5 | Family::Step7, Area::Words) => (Counted::Bytes, last / 8),
+        (Family::Step5 | Family::Step7, Area::Timers) => (Counted::Timers, last),
+        (Family::Step5 | Family::Step7, Area::Counters) => (Counted::Counters, last),
         _ => return None,
     })
 }

@@ -83,7 +83,10 @@ pub fn exits(model: &UnitModel) -> Vec<[ExprId; 2]> {
         }
         _ => None,
     };
-    model.statements.iter().filter_map(exit).take(MAX_WRITES).collect()
+    // The end of the last part is no early one.
+    let ends = |it: &&Statement| matches!(it.kind, StatementKind::Return { when: Exprs::TRUE, .. });
+    let last = model.statements.len() - usize::from(model.statements.last().as_ref().is_some_and(ends));
+    model.statements.iter().take(last).filter_map(exit).take(MAX_WRITES).collect()
 }
 
 /// For each statement, the jump that can skip it: the one before it that leads furthest. An index into the jumps.

@@ -16,6 +16,7 @@ use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
 use crate::model::unit::{Actual, Callee, Formal, Given, Mode, Pin, Section};
 use crate::syntax::Language;
+use crate::target::step5;
 
 /// What runs code: code of one context never interrupts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -51,7 +52,7 @@ impl Context {
     /// The task or block that it stands for.
     pub fn name(self, family: Family) -> String {
         match (self, family) {
-            (Self::Cyclic, Family::Step7) => "OB1".to_owned(),
+            (Self::Cyclic, Family::Step5 | Family::Step7) => "OB1".to_owned(),
             (Self::Cyclic, _) => "MAST".to_owned(),
             (Self::Fast, _) => "FAST".to_owned(),
             (Self::Event(number), _) => format!("EVT{number}"),
@@ -683,15 +684,17 @@ fn is_entry(entity: &Entity) -> bool {
 }
 
 /// The context that an entry point makes by itself.
-fn own_context(entity: &Entity) -> Option<Context> {
-    match entity {
+fn own_context(facts: &UnitFacts) -> Option<Context> {
+    match &facts.entity {
         Entity::Pl7 { task: Task::Mast, .. } => Some(Context::Cyclic),
         Entity::Pl7 { task: Task::Fast, .. } => Some(Context::Fast),
         Entity::Pl7 { task: Task::Event(number), .. } => Some(Context::Event(*number)),
         Entity::Pl7 { task: Task::Numbered(number), .. } => Some(Context::Task(*number)),
         Entity::Block { name: BlockName::Number(BlockKind::Ob, number), .. } => Some(match number {
             1 => Context::Cyclic,
-            100..=102 => Context::Startup,
+            // GRF:415, 967-978: after a stop, and after a power failure.
+            20..=22 if matches!(facts.language, Language::Step5(_)) => Context::Startup,
+            100..=102 if !matches!(facts.language, Language::Step5(_)) => Context::Startup,
             other => Context::Interrupt(*other),
         }),
         Entity::Listing => Some(Context::Cyclic),
@@ -709,7 +712,7 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>
     }
     let mut contexts: Vec<Vec<Context>> = vec![Vec::new(); units.len()];
     for (unit, facts) in units.iter().enumerate() {
-        let Some(context) = own_context(&facts.entity).filter(|_| is_entry(&facts.entity)) else { continue };
+        let Some(context) = own_context(facts).filter(|_| is_entry(&facts.entity)) else { continue };
         let mut stack = vec![as_index(unit)];
         while let Some(at) = stack.pop() {
             if !contexts[at as usize].contains(&context) {
@@ -721,7 +724,7 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>
     let reached = contexts.iter().map(|it| !it.is_empty()).collect();
     for (unit, list) in contexts.iter_mut().enumerate() {
         if list.is_empty() {
-            list.push(own_context(&units[unit].entity).unwrap_or(Context::Cyclic));
+            list.push(own_context(units[unit]).unwrap_or(Context::Cyclic));
         }
         list.sort_unstable();
     }
@@ -764,7 +767,7 @@ fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<
     match family {
         Family::Pl72 => entries.sort_by_key(|&it| pl7_2_rank(&units[it].entity)),
         Family::Pl7 => order_sections(units, &mut entries),
-        Family::Step7 => {}
+        Family::Step5 | Family::Step7 => {}
     }
     for root in entries.into_iter().chain(0..units.len()) {
         let mut stack = vec![as_index(root)];
@@ -851,6 +854,7 @@ fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -
     let entry = has_main(family, units) && !units.iter().any(|it| it.has_gaps);
     let closed = calls.iter().all(|call| match &call.it.callee {
         Callee::Block(BlockName::Number(kind, _)) if kind.is_system() => true,
+        Callee::Block(name) if family == Family::Step5 && step5::is_function(name) => true,
         Callee::Subroutine(_) | Callee::Block(_) => call.target.is_some(),
         Callee::Unknown => false,
         Callee::LocalInstance(_) | Callee::Function(_) | Callee::Instance(_) => true,

@@ -10,7 +10,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::facts::{FactObject, UnitFacts};
 use crate::model::entity::Family;
-use crate::model::object::{Class, Object, Type, pl7, pl72};
+use crate::model::object::{Class, Object, Type, pl7, pl72, step5};
 use crate::model::symbols::key;
 use crate::model::unit::Mode;
 
@@ -65,6 +65,8 @@ impl SymbolTable {
     /// The address of a symbol. An item or bit that has no symbol of its own goes by that of its object: `Etat:X1`,
     /// `Tempo.Q`, a table by that of its first word (PL7:1234-1242).
     pub fn address(&self, symbol: &str) -> Option<SmolStr> {
+        // STEP 5 marks symbols in code.
+        let symbol = symbol.strip_prefix('-').unwrap_or(symbol);
         let base = symbol.find(['.', ':', ',']).unwrap_or(symbol.len());
         let (name, rest) = symbol.split_at_checked(base)?;
         match self.addresses.get(&key(name))? {
@@ -119,7 +121,9 @@ impl SymbolTable {
             return None;
         }
         let text = object.text.as_str();
-        let resolved = if self.family == Family::Pl72 {
+        let resolved = if self.family == Family::Step5 {
+            step5::parse_any(&self.address(text)?)
+        } else if self.family == Family::Pl72 {
             pl72::parse(&self.address(text)?).map(|it| it.object)
         } else if object.indexed {
             let (name, rest) = text.split_once('[')?;

@@ -21,7 +21,7 @@ mod tree;
 use crate::load::WrongConfig;
 use crate::source::detect::Dialect;
 
-/// Finds mistakes in PLC programs as they lie on disk: Schneider PL7 (IL, ST) and Siemens STEP 7 (AWL).
+/// Finds mistakes in PLC programs as they lie on disk: Schneider PL7 and PL7-2, Siemens STEP 7 (AWL) and STEP 5.
 #[derive(Debug, Parser)]
 #[command(name = "plclint", version, propagate_version = true, arg_required_else_help = true)]
 #[command(

@@ -21,9 +21,10 @@ pub(super) fn graph(name: &str, units: &[Unit<'_>], index: &ProgramIndex<'_>) ->
     let mut nodes: Vec<Option<u32>> = Vec::with_capacity(units.len());
     for (at, unit) in (0..).zip(units) {
         let entity = &unit.model.entity;
-        let is_data = matches!(entity, Entity::Block { kind: BlockKind::Db | BlockKind::Udt, .. });
+        let is_data = entity.block_kind().is_some_and(BlockKind::is_data);
         let is_code = !matches!(entity, Entity::Container)
-            && !matches!(unit.language, Language::Exchange | Language::Pl7Xref)
+            && !unit.language.declares_symbols()
+            && unit.language != Language::Pl7Xref
             && !is_data;
         let node = is_code.then(|| {
             let look = if index.is_entry(at) { Look::Entry } else { Look::Code };

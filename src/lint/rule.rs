@@ -45,7 +45,7 @@ pub struct Rule {
     pub default: bool,
     /// Whether it finds more when the controller is known.
     pub by_controller: bool,
-    /// Dialects that it is for: `pl7`, `il`, `st`, `s7`, `all`.
+    /// Dialects that it is for: `pl7`, `il`, `st`, `s7`, `s5`, `all`.
     pub dialects: &'static [&'static str],
     /// Places in the source documents: `PL7:1463`.
     pub sources: &'static [&'static str],
@@ -106,6 +106,7 @@ impl Rule {
             "g7" => is_pl7_chart,
             "pl72" => language.is_pl7_2(),
             "s7" => matches!(language, Language::Awl(_)),
+            "s5" => matches!(language, Language::Step5(_)),
             _ => false,
         })
     }
@@ -120,6 +121,7 @@ impl Rule {
         self.dialects.iter().any(|dialect| match family {
             Family::Pl7 => matches!(*dialect, "all" | "pl7" | "il" | "st" | "ld" | "g7" | "dfb"),
             Family::Pl72 => matches!(*dialect, "all" | "pl72"),
+            Family::Step5 => matches!(*dialect, "all" | "s5"),
             Family::Step7 => matches!(*dialect, "all" | "s7"),
         })
     }

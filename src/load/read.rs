@@ -95,6 +95,8 @@ fn recognised(input: Input) -> Result<Input, Unread> {
         | Detected::Pasted(_)
         | Detected::Pl72
         | Detected::Pl72Exchange
+        | Detected::Step5
+        | Detected::Step5Symbols
         | Detected::Step7
         | Detected::Stx => {
             return Ok(input);

@@ -10,15 +10,23 @@ pub enum Family {
     Pl7,
     /// PL7-2, the language of the TSX 17-20, 27 and 47.
     Pl72,
+    /// STEP 5, of the S5 controllers.
+    Step5,
     Step7,
 }
 
 impl Family {
+    /// Whether blocks are Siemens's, named by kind and number.
+    pub fn has_blocks(self) -> bool {
+        matches!(self, Self::Step5 | Self::Step7)
+    }
+
     /// The software that programs it.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Pl7 => "PL7",
             Self::Pl72 => "PL7-2",
+            Self::Step5 => "STEP 5",
             Self::Step7 => "STEP 7",
         }
     }
@@ -56,6 +64,14 @@ pub enum BlockKind {
     Udt,
     Sfb,
     Sfc,
+    /// Program block of STEP 5.
+    Pb,
+    /// Sequence block of STEP 5.
+    Sb,
+    /// Extended function block of STEP 5.
+    Fx,
+    /// Extended data block of STEP 5.
+    Dx,
 }
 
 impl BlockKind {
@@ -68,7 +84,39 @@ impl BlockKind {
             Self::Udt => "UDT",
             Self::Sfb => "SFB",
             Self::Sfc => "SFC",
+            Self::Pb => "PB",
+            Self::Sb => "SB",
+            Self::Fx => "FX",
+            Self::Dx => "DX",
         }
+    }
+
+    /// The kind with these letters, in any case.
+    pub fn of(letters: &str) -> Option<Self> {
+        const ALL: [BlockKind; 11] = [
+            BlockKind::Ob,
+            BlockKind::Fb,
+            BlockKind::Fc,
+            BlockKind::Db,
+            BlockKind::Udt,
+            BlockKind::Sfb,
+            BlockKind::Sfc,
+            BlockKind::Pb,
+            BlockKind::Sb,
+            BlockKind::Fx,
+            BlockKind::Dx,
+        ];
+        ALL.into_iter().find(|it| it.as_str().eq_ignore_ascii_case(letters))
+    }
+
+    /// Whether the block holds code that a program calls.
+    pub fn is_callable(self) -> bool {
+        matches!(self, Self::Fb | Self::Fc | Self::Pb | Self::Sb | Self::Fx)
+    }
+
+    /// Whether the block holds data, and no code.
+    pub fn is_data(self) -> bool {
+        matches!(self, Self::Db | Self::Dx | Self::Udt)
     }
 
     /// Whether the block is part of the CPU's own firmware, so that no program contains it.

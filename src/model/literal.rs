@@ -1,5 +1,9 @@
 //! Constants and their values.
 
+mod step5;
+
+pub use step5::parse_step5;
+
 /// The value of a constant, with what its spelling says of its type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {

@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use crate::model::entity::Family;
 use crate::model::object::{Class, Object, Rights, Type};
 use crate::report::citation;
+use crate::syntax::Language;
 use crate::syntax::awl::instruction as awl;
 use crate::syntax::pl7::{functions, instructions};
-use crate::syntax::{Language, Mnemonics};
+use crate::syntax::step5::instruction as step5;
 
 /// `output, 1 bit`.
 pub(super) fn kind(object: &Object) -> String {
@@ -80,7 +81,12 @@ pub(super) fn place(object: &Object, family: Family) -> Option<String> {
         matches!(object.class, Class::Input | Class::Output | Class::Fault | Class::ModuleWord) && object.is_fixed();
     match family {
         Family::Pl7 if is_channel => pl7_place(&object.text),
-        Family::Step7 if object.is_fixed() && is_memory(object.class) => {
+        // The data blocks of STEP 5 have words.
+        Family::Step5 | Family::Step7
+            if object.is_fixed()
+                && is_memory(object.class)
+                && (family == Family::Step7 || !matches!(object.class, Class::Data | Class::InstanceData)) =>
+        {
             let (byte, bit) = (object.footprint.start / 8, object.footprint.start % 8);
             Some(match object.ty.bits() {
                 Some(1) => format!("byte {byte}, bit {bit}"),
@@ -128,7 +134,8 @@ fn pl7_place(address: &str) -> Option<String> {
 /// An instruction or function in one line, with its place in the manual where the tables have it.
 pub(super) fn instruction(word: &str, language: Language) -> Option<String> {
     match language {
-        Language::Awl(mnemonics) => awl_instruction(word, mnemonics),
+        Language::Awl(mnemonics) => s7_instruction(word, awl::lookup(word, mnemonics)?),
+        Language::Step5(mnemonics) => s7_instruction(word, step5::lookup(word, mnemonics)?),
         Language::Pl7Il => il_instruction(word).or_else(|| function(word)),
         Language::Pl7St | Language::Pl7Ld | Language::Pl7Gr7 | Language::Sfc => function(word),
         _ => None,
@@ -215,9 +222,8 @@ fn function(word: &str) -> Option<String> {
     Some(cited(&text, it.line))
 }
 
-fn awl_instruction(word: &str, mnemonics: Mnemonics) -> Option<String> {
+fn s7_instruction(word: &str, op: awl::Op) -> Option<String> {
     use awl::Op;
-    let op = awl::lookup(word, mnemonics)?;
     let text = match op {
         Op::And => "AND of the RLO and the operand",
         Op::AndNot => "AND of the RLO and the negated operand",
@@ -305,6 +311,16 @@ fn awl_instruction(word: &str, mnemonics: Mnemonics) -> Option<String> {
         Op::AddAddressRegister(_) => "adds to an address register",
         Op::SwapAddressRegisters => "exchanges the address registers",
         Op::Nop => "does nothing",
+        Op::TestBit(true) => "checks the bit for 1, whatever the RLO was",
+        Op::TestBit(false) => "checks the bit for 0, whatever the RLO was",
+        Op::SetAlways => "sets the bit, whatever the RLO is",
+        Op::ResetAlways => "resets the bit, whatever the RLO is",
+        Op::Generate => "makes a data block of as many words as accumulator 1 says",
+        Op::Process => "the word is added to the operand of the next instruction",
+        Op::Stop => "stops the controller",
+        Op::Control => "instruction to the system, without effect on what the program computes",
+        Op::LoadRegister => "loads from the place whose address is in accumulator 1",
+        Op::TransferRegister => "transfers to a place whose address is in an accumulator",
         Op::Display => "display instruction of the programming device, without effect",
     };
     Some(format!("`{}`: {text}", word.to_uppercase()))
@@ -314,6 +330,7 @@ fn awl_instruction(word: &str, mnemonics: Mnemonics) -> Option<String> {
 mod tests {
     use super::*;
     use crate::model::object::{pl7, step7};
+    use crate::syntax::Mnemonics;
 
     #[test]
     fn addresses_are_decoded() {

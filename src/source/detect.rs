@@ -7,11 +7,13 @@ use std::str::FromStr;
 
 use super::decode::{Encoding, SourceText, decode, looks_binary};
 use super::heading::{
-    HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, strip_prefix_ignore_case, word,
+    HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, step5_code, step5_heading,
+    strip_prefix_ignore_case, word,
 };
 use crate::model::entity::{BlockKind, BlockName, Entity, Family};
 use crate::model::object;
 use crate::syntax::pl7::ladder_words;
+use crate::syntax::step5::symbols;
 
 use super::scan::{Comments, Lines};
 use super::stx;
@@ -22,6 +24,7 @@ pub enum Dialect {
     #[default]
     Auto,
     Step7,
+    Step5,
     /// PL7, its language by content.
     Pl7,
     Pl7Il,
@@ -33,9 +36,10 @@ pub enum Dialect {
 }
 
 impl Dialect {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Auto,
         Self::Step7,
+        Self::Step5,
         Self::Pl7,
         Self::Pl7Il,
         Self::Pl7St,
@@ -49,6 +53,7 @@ impl Dialect {
         match self {
             Self::Auto => "auto",
             Self::Step7 => "step7",
+            Self::Step5 => "step5",
             Self::Pl7 => "pl7",
             Self::Pl7Il => "pl7-il",
             Self::Pl7St => "pl7-st",
@@ -114,6 +119,10 @@ pub enum Detected {
     Pl72Exchange,
     /// STEP 7 statement list: a source with block headers or a bare listing.
     Step7,
+    /// STEP 5 statement list: printed blocks or a bare listing.
+    Step5,
+    /// Symbols of a STEP 5 program.
+    Step5Symbols,
     /// A PL7 project: its text is the listing of its tables.
     Stx,
     /// Part of a controller program, in a form that plclint does not read. `what` names the form.
@@ -147,7 +156,7 @@ pub mod unsupported {
     pub const CONTROL_EXPERT: &str = "Control Expert (Unity Pro) export";
     pub const SCL: &str = "STEP 7 structured control language (SCL)";
     pub const GRAPH: &str = "S7-GRAPH source";
-    pub const STEP5: &str = "STEP 5 program";
+    pub const STEP5: &str = "STEP 5 program file (S5D)";
     pub const SYMBOLS: &str = "STEP 7 symbol table";
     pub const IEC: &str = "IEC 61131-3 text that is not PL7";
 
@@ -164,6 +173,8 @@ enum Extension {
     Awl,
     /// STEP 7 statement list or a 3-D mesh.
     Stl,
+    /// STEP 5 statement list.
+    S5,
     /// A block of TIA Portal, or a data base.
     Tia,
     Il,
@@ -190,6 +201,7 @@ enum Storage {
 const EXTENSIONS: &[(&str, Extension)] = &[
     ("awl", Extension::Awl),
     ("stl", Extension::Stl),
+    ("s5", Extension::S5),
     ("db", Extension::Tia),
     ("udt", Extension::Tia),
     ("il", Extension::Il),
@@ -254,7 +266,8 @@ pub fn load(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> (So
 /// The listing of a PL7 project, or why it has none; `None` if the bytes are no project.
 fn project(hint: FileHint<'_>, bytes: &[u8], encoding: Option<Encoding>) -> Option<Result<SourceText, &'static str>> {
     let by_name = matches!(extension(hint.path), Extension::Form(unsupported::PROJECT, _));
-    if !(by_name || hint.explicit) || hint.dialect == Dialect::Step7 || !stx::is_archive(bytes) {
+    if !(by_name || hint.explicit) || matches!(hint.dialect, Dialect::Step7 | Dialect::Step5) || !stx::is_archive(bytes)
+    {
         return None;
     }
     let listing = stx::listing(bytes, encoding.filter(|it| it.is_single_byte()));
@@ -309,6 +322,7 @@ fn detect_form(hint: FileHint<'_>, text: &str, tally: &Tally) -> Detected {
     match hint.dialect {
         Dialect::Auto => detect_auto(extension(hint.path), hint.explicit, text, tally),
         Dialect::Step7 => Detected::Step7,
+        Dialect::Step5 => Detected::Step5,
         Dialect::Pl7
         | Dialect::Pl7Il
         | Dialect::Pl7St
@@ -380,6 +394,8 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Form(unsupported::CONTROL_EXPERT, _) if !tally.markup => Detected::NotPlc,
         Extension::Form(what, _) => Detected::Unsupported { what },
         Extension::Awl if tally.markup => Detected::Unreadable { why: MARKUP },
+        Extension::S5 if tally.markup => Detected::Unreadable { why: MARKUP },
+        Extension::S5 => Detected::Step5,
         Extension::Awl => Detected::Step7,
         Extension::Stl if tally.lines == 0 && !text.is_empty() => Detected::Step7,
         Extension::Stl if weak && tally.step7 > 0 => Detected::Step7,
@@ -394,6 +410,7 @@ fn detect_auto(extension: Extension, explicit: bool, text: &str, tally: &Tally) 
         Extension::Ld if tally.rung > 0 => Detected::Pasted(Pl7Text::Ld),
         Extension::Gr7 if tally.has_chart() || tally.lines == 0 => Detected::Pasted(Pl7Text::Gr7),
         Extension::Sfc if tally.has_chart() => Detected::Pasted(Pl7Text::Sfc),
+        Extension::Table if tally.symbols_step5 * 2 > tally.lines => Detected::Step5Symbols,
         Extension::Table if tally.symbols * 2 > tally.lines => Detected::Unsupported { what: unsupported::SYMBOLS },
         Extension::Other | Extension::Txt if explicit && tally.prose == 0 && tally.code_lines() * 2 > tally.lines => {
             if tally.step7 > tally.il + tally.st {
@@ -421,6 +438,9 @@ fn declared_by_pl7_2(address: &str) -> bool {
     let address = address.get(..end.min(LONGEST_PL7_2)).unwrap_or_default();
     !address.starts_with('%') && object::pl72::class_of(address).is_some_and(|it| it != object::Class::Fault)
 }
+
+/// Of this many lines of STEP 5 that STEP 7 has too, one is its own at least: the end of a segment, a call.
+const STEP5_SHARE: u32 = 16;
 
 /// How much of a text is looked at.
 const SAMPLE: usize = 128 * 1024;
@@ -484,8 +504,9 @@ struct Tally {
     /// Words of S7-GRAPH.
     graph: u32,
     step5: u32,
-    /// Lines of a symbol table.
+    /// Lines of a symbol table, and those of one of STEP 5.
     symbols: u32,
+    symbols_step5: u32,
     /// Natural language.
     prose: u32,
     /// The text starts like XML, HTML or JSON.
@@ -505,7 +526,8 @@ impl Tally {
         for line in Lines::new(text, Comments::Step7) {
             let code = line.code.split("//").next().unwrap_or_default().trim();
             // Parentheses and the dots of an omission alone mean nothing.
-            if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) {
+            // A semicolon starts a comment of STEP 5.
+            if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) && !(code.starts_with(';') && code.len() > 1) {
                 tally.add(code);
             }
         }
@@ -517,6 +539,7 @@ impl Tally {
         if is_symbol_row(line) {
             self.symbols += 1;
         }
+        self.symbols_step5 += u32::from(symbols::row(line).is_some());
         if let Some((block, _)) = exchange_block(line) {
             self.blocks += 1;
             self.own_blocks += u32::from(matches!(block, "[SOURCE_UNIT]" | "[DATA_UNIT]"));
@@ -655,8 +678,10 @@ impl Tally {
         if self.headings() > 0 && self.pl7 + self.il + self.st + self.rung + self.chart > 0 {
             return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
         }
-        if self.step5 > 2 && (self.step5 + self.step7) * 2 > lines && self.step5 * 4 > self.step7 {
-            return Some(Detected::Unsupported { what: unsupported::STEP5 });
+        let of_step5 = self.step5 + self.step7 + self.step7_symbols;
+        let is_enough = self.step5 > 1 || self.step5 == 1 && of_step5 == lines && lines > 2;
+        if is_enough && of_step5 * 2 > lines && self.step5 * STEP5_SHARE >= self.step7 {
+            return Some(Detected::Step5);
         }
         let most = |count: u32| count * 5 >= lines * 3;
         let enough = |count: u32| count > 2 || count > 1 && count == lines;
@@ -962,6 +987,15 @@ fn is_step5(line: &str) -> bool {
     if line.starts_with("***") {
         return true;
     }
+    // The address that a print puts before the colon.
+    let address = line.find(|it: char| !it.is_ascii_hexdigit()).unwrap_or(0);
+    let behind = line.get(address..).unwrap_or_default().trim_start();
+    let line = if address >= 4 && behind.starts_with(':') { behind } else { line };
+    let line = step5_code(line);
+    let heading = step5_heading(line).and_then(|it| it.block_kind());
+    if heading.is_some_and(|it| matches!(it, BlockKind::Pb | BlockKind::Sb | BlockKind::Fx | BlockKind::Dx)) {
+        return true;
+    }
     let (colon, code) = match line.strip_prefix(':') {
         Some(code) if !code.starts_with('=') || code.starts_with("= ") => (true, code.trim_start()),
         _ => (false, line),
@@ -971,7 +1005,26 @@ fn is_step5(line: &str) -> bool {
         let (kind, _) = operand.trim_start().split_at_checked(2).unwrap_or_default();
         ["KB", "KC", "KF", "KG", "KH", "KM", "KT", "KY", "KZ"].contains(&kind)
     });
-    operator || constant || colon && is_step7_instruction(code)
+    operator || constant || colon && is_step7_instruction(code) || is_step5_instruction(strip_step7_label(code))
+}
+
+/// Whether an instruction is one that STEP 7 has not: `SPA PB 10`, `SPB= M1`, `A DB 5`, `KEW`, `NAME :INIT`.
+fn is_step5_instruction(code: &str) -> bool {
+    let (mnemonic, rest) = word(code);
+    let rest = rest.trim_start();
+    let (operand, after) = word(rest);
+    let letters = operand.trim_end_matches(|it: char| it.is_ascii_digit());
+    let numbered = letters.len() < operand.len() || after.trim_start().starts_with(|it: char| it.is_ascii_digit());
+    match mnemonic {
+        "SPA" | "SPB" | "JU" | "JC" | "BA" | "BAB" | "DOU" | "DOC" => {
+            numbered && ["OB", "PB", "SB", "FB", "FX"].contains(&letters) || rest.starts_with('=')
+        }
+        "SPZ" | "SPN" | "SPP" | "SPM" | "SPO" | "JZ" | "JN" | "JP" | "JM" | "JO" => rest.starts_with('='),
+        "A" | "E" | "C" | "G" => numbered && letters == "DB" || letters == "DX",
+        "KEW" | "KZW" | "CFW" | "CSW" => rest.is_empty(),
+        "NAME" | "BEZ" | "DECL" => rest.starts_with(':') && !rest.starts_with(":="),
+        _ => false,
+    }
 }
 
 /// Whether a line declares, initialises or passes a value: `tem : TIMER;`, `duree := S5T#1S`.
@@ -1066,7 +1119,7 @@ mod tests {
                 "FUNCTION_BLOCK \"f\"\nBEGIN\n  \"x\" := 1;\n y := 2;\nEND_FUNCTION_BLOCK",
                 unsupported(unsupported::SCL),
             );
-            check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", unsupported(unsupported::STEP5));
+            check(path, "PB 10\n  :U E 0.0\n  :L KF +5\n  := A 4.0\n  :***\n  :BE\n", Detected::Step5);
             check(path, RUNG, LD);
         }
         check("a.txt", "DATA_BLOCK DB 1\nSTRUCT\n a : INT;\nEND_STRUCT;\nBEGIN\n a := 1;\nEND_DATA_BLOCK", STEP7);
@@ -1187,6 +1240,29 @@ mod tests {
         check("a.seq", "\tPump\tE 0.0\tcomment\n", unsupported(unsupported::SYMBOLS));
         check("a.sfc", "INITIAL_STEP X0 : END_STEP", Detected::Pasted(Pl7Text::Sfc));
         check("a.sfc", "<svg/>", Detected::NotPlc);
+    }
+
+    #[test]
+    fn step5_is_no_step7() {
+        let s5 = Detected::Step5;
+        for path in ["a.awl", "a.txt", "a.stl", "a.s5"] {
+            check(path, "PB 10\n     :U    E 0.0\n     :=    A 4.0\n     :BE\n", s5);
+            check(path, "PB 10\nA I 0.0\n= Q 4.0\nJU PB 11\nBE\n", s5);
+            check(path, "U t1\nU X1\nS X2\nR X1\n***\nU t2\nU X2\nS X3\nR X2\n***\n", s5);
+            check(path, "; start-up\nUN M0.0\nS M0.0\nSPA PB10\nSPA PB20\nBE\n", s5);
+            check(path, "0005      :U    E 0.0\n0006      :L    KT 200.1\n0007      :SV   T 3\n0008      :***\n", s5);
+        }
+        for text in [
+            "U E 0.0\n= A 4.0\nSPA M001\nM001: NOP 0\nBE\n",
+            "FUNCTION FB 5 : VOID\nBEGIN\nNETWORK\nU E 0.0\n= A 4.0\nEND_FUNCTION\n",
+            "AUF DB 5\nL DBW 0\nT MW 2\nU E 0.0\nUC FC 1\nBE\n",
+            "(*** pump ***)\nU E 0.0\n= A 4.0\n// *** valve\nU E 0.1\n= A 4.1\n",
+        ] {
+            check("a.awl", text, STEP7);
+        }
+        check("z0.seq", "1\tE 0.0\tSTART\tTaster\n2\tMW 10\tZAHL\t\n", Detected::Step5Symbols);
+        assert_eq!("step5".parse(), Ok(Dialect::Step5));
+        assert_eq!(detect(FileHint { dialect: Dialect::Step5, ..hint("a.awl") }, "U E 0.0\n"), s5);
     }
 
     #[test]

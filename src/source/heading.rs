@@ -88,6 +88,37 @@ fn numbered_block(text: &str) -> Option<(BlockName, &str)> {
     (!rest.starts_with(|c: char| c.is_alphanumeric() || c == '_')).then_some((BlockName::Number(kind, number), rest))
 }
 
+/// Reads the heading of a printed STEP 5 block: `PB 10`, `FB5`, `BAUSTEIN : OB 1`, alone on its line or with what a print
+/// says of it behind (`LAE=22`).
+pub(super) fn step5_heading(line: &str) -> Option<Entity> {
+    let named = ["BAUSTEIN", "BLOCK", "BLOC", "BLOQUE"].iter().find_map(|it| {
+        let rest = strip_prefix_ignore_case(line, it)?;
+        rest.starts_with([' ', '\t', ':']).then(|| rest.trim_start())
+    });
+    let name = named.map_or(line, |it| it.strip_prefix(':').map_or(it, str::trim_start));
+    let end = name.find(|it: char| !it.is_ascii_alphabetic())?;
+    let (letters, rest) = name.split_at(end);
+    let kind = BlockKind::of(letters).filter(|it| STEP5_BLOCKS.contains(it))?;
+    let (number, rest) = number(rest.trim_start_matches([' ', '\t']))?;
+    let rest = rest.trim_start();
+    let (key, value) = word(rest);
+    let ends = rest.is_empty()
+        || rest == ":"
+        || rest.starts_with(',')
+        || !key.is_empty() && value.trim_start().starts_with('=');
+    ends.then_some(Entity::Block { kind, name: BlockName::Number(kind, number) })
+}
+
+const STEP5_BLOCKS: [BlockKind; 7] =
+    [BlockKind::Ob, BlockKind::Pb, BlockKind::Sb, BlockKind::Fb, BlockKind::Fx, BlockKind::Db, BlockKind::Dx];
+
+/// What of a line of STEP 5 stands before its comment.
+pub(super) fn step5_code(line: &str) -> &str {
+    let end = line.find(';').unwrap_or(line.len());
+    let end = line.find("//").map_or(end, |it| it.min(end));
+    line.get(..end).unwrap_or_default().trim()
+}
+
 /// What follows the keyword that ends a STEP 7 block, if a line starts with one.
 pub(super) fn block_end(line: &str) -> Option<&str> {
     if !line.starts_with(['E', 'e']) {

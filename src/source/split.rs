@@ -15,11 +15,11 @@ use smol_str::{SmolStr, format_smolstr};
 use super::detect::{Detected, Pl7Text, operands_of, pl7_text, unsupported};
 use super::heading::{
     Heading, HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_2_entity, pl7_address,
-    pl7_heading, strip_prefix_ignore_case, word,
+    pl7_heading, step5_code, step5_heading, strip_prefix_ignore_case, word,
 };
 use super::scan::{Comments, Lines};
 use crate::model::entity::{Entity, Family, Part, Task};
-use crate::syntax::{Language, Mnemonics};
+use crate::syntax::{self, Language, Mnemonics};
 
 /// A piece of a file that is parsed and checked by itself.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -52,6 +52,8 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
     let mut units = Units { text, drafts: Vec::new(), code_end: 0 };
     match detected {
         Detected::Step7 => step7(&mut units, hint),
+        Detected::Step5 => step5(&mut units, hint),
+        Detected::Step5Symbols => units.push(0, Draft::new(Entity::Container, Some(Language::Step5Symbols))),
         Detected::Pasted(default) => pasted(&mut units, default, Family::Pl7, hint),
         Detected::Exchange => exchange(&mut units, Family::Pl7),
         Detected::Pl72Exchange => exchange(&mut units, Family::Pl72),
@@ -78,7 +80,7 @@ pub fn resplit(
     hint: &SplitHint,
 ) -> Option<Vec<UnitSpan>> {
     let is_own = |it: &UnitSpan| match detected {
-        Detected::Step7 => matches!(it.entity, Entity::Block { .. }),
+        Detected::Step7 | Detected::Step5 => matches!(it.entity, Entity::Block { .. }),
         Detected::Pasted(_) | Detected::Pl72 => true,
         _ => false,
     };
@@ -96,8 +98,11 @@ pub fn resplit(
     let moved = |offset: usize| (offset + new.len()).checked_sub(old.len());
     let part = new.get(start(unit)..moved(next.map_or(end(unit), end))?)?;
     let mut hint = hint.clone();
-    if let (Detected::Step7, Language::Awl(before)) = (detected, unit.language) {
-        if hint.mnemonics.is_none() && mnemonics(new) != before {
+    if let (Detected::Step7, Language::Awl(before)) | (Detected::Step5, Language::Step5(before)) =
+        (detected, unit.language)
+    {
+        let vote = if detected == Detected::Step5 { syntax::step5::vote } else { mnemonics };
+        if hint.mnemonics.is_none() && vote(new) != before {
             return None;
         }
         hint.mnemonics = Some(before);
@@ -144,6 +149,9 @@ fn common_end(a: &[u8], b: &[u8]) -> usize {
 
 /// Whether the first line of code in a unit's text is what names the unit.
 fn heading_of(part: &str, detected: Detected) -> bool {
+    if detected == Detected::Step5 {
+        return part.split(['\n', '\r']).map(step5_code).find(|it| !it.is_empty()).and_then(step5_heading).is_some();
+    }
     let comments = if detected == Detected::Step7 { Comments::Step7 } else { Comments::Pl7 };
     let mut codes = Lines::new(part, comments).map(|it| it.code).filter(|it| !it.is_empty() && !it.starts_with("//"));
     codes.next().is_some_and(|it| match detected {
@@ -377,6 +385,32 @@ fn step7(units: &mut Units<'_>, hint: &SplitHint) {
                 draft.entity = unnamed.clone();
             }
         }
+    }
+}
+
+/// STEP 5: headings of blocks, and code before the first one.
+fn step5(units: &mut Units<'_>, hint: &SplitHint) {
+    let text = units.text;
+    let language = Language::Step5(hint.mnemonics.unwrap_or_else(|| syntax::step5::vote(text)));
+    let mut end = 0;
+    for line in text.split_inclusive(['\n', '\r']) {
+        end += line.len();
+        let code = step5_code(line);
+        if code.is_empty() {
+            continue;
+        }
+        if let Some(entity) = step5_heading(code) {
+            units.push(units.code_end, Draft::new(entity, Some(language)));
+        } else if units.drafts.is_empty() {
+            units.push(0, Draft::new(Entity::Container, Some(language)));
+        }
+        units.code_end = end;
+    }
+    match units.drafts.as_mut_slice() {
+        [] => units.push(0, Draft::new(Entity::Container, Some(language))),
+        // Code that nothing names is a program, not text around one.
+        [only] if only.entity == Entity::Container => only.entity = hint.entity.clone().unwrap_or(Entity::Listing),
+        _ => {}
     }
 }
 
@@ -800,6 +834,23 @@ fn next_key(line: &str) -> Option<Key> {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+
+    #[test]
+    fn step5_blocks() {
+        let text = "; machine 7\nOB 1\n:SPA PB 10\n:BE\n\n; graph\nBAUSTEIN : PB 10\n:U E 0.0\n:= A 4.0\n:BE\nFB5 LAE=22\nNAME :X\n:BE\n\
+                    DB 3\n0: KH = 0000;\n";
+        let units = split(text, Detected::Step5, &SplitHint::default());
+        let keys: Vec<&str> = units.iter().map(|it| it.key.as_str()).collect();
+        assert_eq!(keys, ["OB1", "PB10", "FB5", "DB3"]);
+        assert!(units.iter().all(|it| it.language == Language::Step5(Mnemonics::German)));
+        assert_eq!(usize::from(units[1].range.start()), text.find("\n; graph").expect("there"));
+        let edited = text.replace("E 0.0", "E 0.12");
+        let again = resplit(text, &units, &edited, Detected::Step5, &SplitHint::default());
+        assert_eq!(again, Some(split(&edited, Detected::Step5, &SplitHint::default())));
+        let listing = split("A I 0.0\n= Q 4.0\n***\n", Detected::Step5, &SplitHint::default());
+        assert_eq!((&listing[0].entity, listing[0].language), (&Entity::Listing, Language::Step5(Mnemonics::English)));
+        assert_eq!(split("", Detected::Step5, &SplitHint::default()).len(), 1);
+    }
 
     use super::super::detect::{FileHint, detect};
     use super::*;

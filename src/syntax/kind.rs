@@ -78,6 +78,8 @@ kinds! {
     Address,
     /// `...`, to the end of its line: code that the author of a listing left out.
     Elision,
+    /// `***`: the end of a STEP 5 segment.
+    SegmentEnd,
 
     // PL7 tokens.
     /// A direct object, as one token: `%MW10:X4`, `%I\0.2.1\0.7`, `%TM8.Q`, `%NW{2.3}1`.

@@ -15,6 +15,7 @@ pub mod awl;
 pub mod exchange;
 pub mod pl7;
 mod pl72;
+pub mod step5;
 pub mod xref;
 
 pub use kind::SyntaxKind;
@@ -35,6 +36,10 @@ pub enum Mnemonics {
 pub enum Language {
     /// STEP 7 statement list, sources and bare listings.
     Awl(Mnemonics),
+    /// STEP 5 statement list, printed blocks and bare listings.
+    Step5(Mnemonics),
+    /// The symbol table of a STEP 5 program (`Z0.SEQ`).
+    Step5Symbols,
     /// PL7 instruction list.
     Pl7Il,
     /// PL7 structured text.
@@ -63,6 +68,16 @@ impl Language {
         matches!(self, Self::Pl7Gr7 | Self::Sfc | Self::Pl72Gr7 | Self::Pl72Sfc)
     }
 
+    /// Whether the text declares symbols for the programs around it.
+    pub fn declares_symbols(self) -> bool {
+        matches!(self, Self::Exchange | Self::Step5Symbols)
+    }
+
+    /// Whether the text is a statement list of Siemens.
+    pub fn is_statement_list(self) -> bool {
+        matches!(self, Self::Awl(_) | Self::Step5(_))
+    }
+
     /// Whether operands and operations are those of PL7-2.
     pub fn is_pl7_2(self) -> bool {
         matches!(self, Self::Pl72Ld | Self::Pl72Gr7 | Self::Pl72Sfc)
@@ -73,6 +88,8 @@ impl Language {
 pub fn parse(language: Language, text: &str) -> Parse {
     match language {
         Language::Awl(mnemonics) => awl::parse(text, mnemonics),
+        Language::Step5(mnemonics) => step5::parse(text, mnemonics),
+        Language::Step5Symbols => step5::symbols::parse(text),
         Language::Pl7Il => pl7::parse_il(text),
         Language::Pl7St => pl7::parse_st(text),
         Language::Pl7Gr7 | Language::Sfc => pl7::parse_chart(text),

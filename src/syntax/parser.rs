@@ -153,6 +153,14 @@ impl<'t> Parser<'t> {
         }
     }
 
+    /// Whether a tab, or three blanks, part the current token from the one before: it stands in a column of its own.
+    pub fn in_next_column(&self) -> bool {
+        const COLUMN: usize = 3;
+        let (start, end) = (self.previous_range().end(), self.current_range().start());
+        let gap = self.text.get(usize::from(start)..usize::from(end)).unwrap_or_default();
+        gap.len() >= COLUMN || gap.contains('\t')
+    }
+
     /// Index of the current token: grows with every `bump`, so a loop can assert its own progress.
     pub fn position(&self) -> usize {
         self.pos

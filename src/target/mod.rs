@@ -5,6 +5,7 @@
 mod count;
 pub mod pl7;
 pub mod pl72;
+pub mod step5;
 pub mod step7;
 
 use std::fmt;
@@ -13,7 +14,7 @@ use std::str::FromStr;
 use count::Counts;
 pub use count::{Count, Counted, CountedBy, Numbered};
 
-use crate::model::entity::Family;
+use crate::model::entity::{BlockKind, Family};
 
 /// A figure and the place that gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -95,6 +96,7 @@ pub struct Target {
 enum Controller {
     Pl7(&'static pl7::Processor),
     Pl72(&'static pl72::Controller, Option<pl72::Version>),
+    Step5(&'static step5::Cpu),
     Step7(&'static step7::Cpu),
 }
 
@@ -126,7 +128,12 @@ impl FromStr for Target {
         let of_pl7 = pl7::PROCESSORS.iter().find(|it| self::key(it.name) == key).map(Self::pl7);
         let of_pl72 = || pl72::CONTROLLERS.iter().find(|it| self::key(it.name) == key).map(Self::of_pl72);
         let of_step7 = || step7::CPUS.iter().find(|it| self::key(it.name) == key).map(Self::step7);
-        of_pl7.or_else(of_pl72).or_else(of_step7).ok_or_else(|| UnknownController { name: name.to_owned() })
+        let of_step5 = || step5::CPUS.iter().find(|it| self::key(it.name) == key).map(Self::of_step5);
+        of_pl7
+            .or_else(of_pl72)
+            .or_else(of_step7)
+            .or_else(of_step5)
+            .ok_or_else(|| UnknownController { name: name.to_owned() })
     }
 }
 
@@ -161,6 +168,10 @@ impl Target {
         Self { controller: Some(Controller::Pl72(controller, None)), ..Self::any(Family::Pl72) }
     }
 
+    fn of_step5(cpu: &'static step5::Cpu) -> Self {
+        Self { controller: Some(Controller::Step5(cpu)), ..Self::any(Family::Step5) }
+    }
+
     fn step7(cpu: &'static step7::Cpu) -> Self {
         Self { controller: Some(Controller::Step7(cpu)), ..Self::any(Family::Step7) }
     }
@@ -179,6 +190,7 @@ impl Target {
         match self.family {
             Family::Pl7 => pl7::NUMBERED,
             Family::Pl72 => pl72::NUMBERED,
+            Family::Step5 => step5::NUMBERED,
             Family::Step7 => step7::NUMBERED,
         }
     }
@@ -197,6 +209,7 @@ impl Target {
         }
         let (own, largest) = match self.controller {
             Some(Controller::Pl7(it)) => (it.count(what), pl7::largest_count(what)),
+            Some(Controller::Step5(it)) => (it.count(what), step5::largest_count(what)),
             Some(Controller::Step7(it)) => (it.count(what), step7::largest_count(what)),
             Some(Controller::Pl72(controller, version)) => {
                 let model = pl72::Model { controller: Some(controller), version };
@@ -205,6 +218,7 @@ impl Target {
             None => match self.family {
                 Family::Pl7 => (None, pl7::largest_count(what)),
                 Family::Pl72 => (None, pl72::Model::default().numbered(what)),
+                Family::Step5 => (None, step5::largest_count(what)),
                 Family::Step7 => (None, step7::largest_count(what)),
             },
         };
@@ -232,7 +246,7 @@ impl Target {
     pub fn events(&self) -> Option<Range> {
         match self.family {
             Family::Pl7 => self.processor().and_then(|it| it.events).or(pl7::EVENTS_LARGEST),
-            Family::Pl72 | Family::Step7 => None,
+            Family::Pl72 | Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -240,7 +254,7 @@ impl Target {
     pub const fn subroutines(&self) -> Option<Range> {
         match self.family {
             Family::Pl7 => Some(pl7::SUBROUTINES),
-            Family::Pl72 | Family::Step7 => None,
+            Family::Pl72 | Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -248,7 +262,7 @@ impl Target {
     pub const fn last_subroutine(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 => Some(pl7::SUBROUTINE_LAST_IN_EDITOR),
-            Family::Pl72 | Family::Step7 => None,
+            Family::Pl72 | Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -256,7 +270,7 @@ impl Target {
     pub const fn section_name_length(&self) -> Option<(Limit, Limit)> {
         match self.family {
             Family::Pl7 => Some((pl7::SECTION_NAME_LENGTH, pl7::SECTION_NAME_LENGTH_IN_EDITOR)),
-            Family::Pl72 | Family::Step7 => None,
+            Family::Pl72 | Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -269,6 +283,7 @@ impl Target {
             (Family::Pl72, Counted::Timers | Counted::Counters | Counted::FastCounters | Counted::Monostables) => {
                 Some(pl72::PRESETS)
             }
+            (Family::Step5, Counted::Counters) => Some(step5::COUNTER_PRESETS),
             (Family::Step7, Counted::Counters) => Some(step7::COUNTER_PRESETS),
             _ => None,
         }
@@ -285,7 +300,7 @@ impl Target {
         match self.family {
             Family::Pl7 => Some(series().ladder_lines()),
             Family::Pl72 => Some(pl72::LADDER_LINES),
-            Family::Step7 => None,
+            Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -322,7 +337,7 @@ impl Target {
                 valid_transitions: pl72::VALID_TRANSITIONS,
                 default: None,
             }),
-            Family::Step7 => None,
+            Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -331,7 +346,7 @@ impl Target {
         match self.family {
             Family::Pl7 => Some(pl7::BRANCHES),
             Family::Pl72 => Some(pl72::OR_BRANCHES_OUT),
-            Family::Step7 => None,
+            Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -340,7 +355,7 @@ impl Target {
         match self.family {
             Family::Pl7 => Some((pl7::CHART_PAGES, pl7::PAGE_LINES, pl7::PAGE_COLUMNS)),
             Family::Pl72 => Some((pl72::CHART_PAGES, pl72::CHART_LINES, pl72::CHART_COLUMNS)),
-            Family::Step7 => None,
+            Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -349,7 +364,7 @@ impl Target {
         match self.family {
             Family::Pl7 => Some(&pl7::CHART_BITS),
             Family::Pl72 => Some(&pl72::CHART_BITS),
-            Family::Step7 => None,
+            Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -358,7 +373,7 @@ impl Target {
         match self.family {
             Family::Pl7 => Some((pl7::STEP_TIMES, pl7::STEP_TIME_UNIT_MS)),
             Family::Pl72 => Some((pl72::STEP_TIMES_S, pl72::STEP_TIME_UNIT_MS)),
-            Family::Step7 => None,
+            Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -388,6 +403,7 @@ impl Target {
         Some(match self.controller? {
             Controller::Pl7(it) => it.name,
             Controller::Pl72(it, _) => it.name,
+            Controller::Step5(it) => it.name,
             Controller::Step7(it) => it.name,
         })
     }
@@ -396,14 +412,15 @@ impl Target {
     pub fn known() -> impl Iterator<Item = &'static str> {
         let of_pl7 = pl7::PROCESSORS.iter().map(|it| it.name);
         let of_pl72 = pl72::CONTROLLERS.iter().map(|it| it.name);
-        of_pl7.chain(of_pl72).chain(step7::CPUS.iter().map(|it| it.name))
+        let of_step7 = step7::CPUS.iter().map(|it| it.name);
+        of_pl7.chain(of_pl72).chain(of_step7).chain(step5::CPUS.iter().map(|it| it.name))
     }
 
     /// The PL7 processor's own table, `None` for another family or an unknown controller.
     pub fn processor(&self) -> Option<&'static pl7::Processor> {
         match self.controller? {
             Controller::Pl7(it) => Some(it),
-            Controller::Pl72(..) | Controller::Step7(_) => None,
+            Controller::Pl72(..) | Controller::Step5(_) | Controller::Step7(_) => None,
         }
     }
 
@@ -418,8 +435,30 @@ impl Target {
     /// The S7 CPU's own table, `None` for another family or an unknown controller.
     pub fn cpu(&self) -> Option<&'static step7::Cpu> {
         match self.controller? {
-            Controller::Pl7(_) | Controller::Pl72(..) => None,
+            Controller::Pl7(_) | Controller::Pl72(..) | Controller::Step5(_) => None,
             Controller::Step7(it) => Some(it),
+        }
+    }
+
+    /// The S5 CPU's own table, `None` for another family or an unknown controller.
+    pub fn step5(&self) -> Option<&'static step5::Cpu> {
+        match self.controller? {
+            Controller::Step5(it) => Some(it),
+            Controller::Pl7(_) | Controller::Pl72(..) | Controller::Step7(_) => None,
+        }
+    }
+
+    /// Numbers of the blocks of a kind, those of every controller of the family when it is unknown. `None` where no source
+    /// tells.
+    pub fn block_numbers(&self, kind: BlockKind) -> Option<Range> {
+        match self.family {
+            Family::Pl7 | Family::Pl72 => None,
+            Family::Step5 => {
+                let blocks = self.step5().map_or(step5::LARGEST_BLOCKS, |it| it.blocks);
+                matches!(kind, BlockKind::Pb | BlockKind::Sb | BlockKind::Fb | BlockKind::Fx | BlockKind::Db)
+                    .then(|| Range::new(0, blocks.value.saturating_sub(1), blocks.source))
+            }
+            Family::Step7 => step7::block_numbers(kind),
         }
     }
 
@@ -428,7 +467,7 @@ impl Target {
     pub fn call_depth(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 => Some(pl7::SUBROUTINE_DEPTH),
-            Family::Pl72 => None,
+            Family::Pl72 | Family::Step5 => None,
             Family::Step7 => self.cpu()?.call_depth,
         }
     }
@@ -437,6 +476,7 @@ impl Target {
     pub const fn parenthesis_depth(&self) -> Limit {
         match self.family {
             Family::Pl7 | Family::Pl72 => pl7::PARENTHESIS_DEPTH,
+            Family::Step5 => step5::PARENTHESIS_DEPTH,
             Family::Step7 => step7::PARENTHESIS_DEPTH,
         }
     }
@@ -446,7 +486,7 @@ impl Target {
         match self.family {
             Family::Pl7 => Some(pl7::LABELS),
             Family::Pl72 => Some(pl72::LABELS),
-            Family::Step7 => None,
+            Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -454,6 +494,7 @@ impl Target {
     pub const fn label_length(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 | Family::Pl72 => None,
+            Family::Step5 => Some(step5::LABEL_LENGTH),
             Family::Step7 => Some(step7::LABEL_LENGTH),
         }
     }
@@ -462,7 +503,7 @@ impl Target {
     pub const fn stack_depth(&self) -> Option<Limit> {
         match self.family {
             Family::Pl7 => Some(pl7::STACK_DEPTH),
-            Family::Pl72 | Family::Step7 => None,
+            Family::Pl72 | Family::Step5 | Family::Step7 => None,
         }
     }
 
@@ -471,6 +512,7 @@ impl Target {
         match self.family {
             Family::Pl7 => Some(pl7::WATCHDOG_DEFAULT_MS),
             Family::Pl72 => Some(pl72::WATCHDOG_MS),
+            Family::Step5 => None,
             Family::Step7 => self.cpu()?.watchdog_ms,
         }
     }

@@ -1,6 +1,7 @@
 //! SIMATIC S7-300 and S7-400.
 
 use super::{Counted, Limit, Numbered, Range};
+use crate::model::entity::BlockKind;
 
 /// Longest jump label, in characters.
 pub const LABEL_LENGTH: Limit = Limit::new(4, "S7:315");
@@ -26,6 +27,15 @@ pub static NUMBERED: &[Numbered] = &[
     Numbered { what: Counted::Timers, key: "T", prefix: "T ", plural: "timers" },
     Numbered { what: Counted::Counters, key: "Z", prefix: "Z ", plural: "counters" },
 ];
+
+/// Numbers of the blocks of a kind on the largest CPUs.
+pub fn block_numbers(kind: BlockKind) -> Option<Range> {
+    match kind {
+        BlockKind::Fb | BlockKind::Fc => Some(Range::new(0, 7999, GENERAL)),
+        BlockKind::Db => Some(Range::new(1, 16_000, GENERAL)),
+        _ => None,
+    }
+}
 
 /// What one CPU has. `None` where no source tells.
 #[derive(Debug, PartialEq, Eq)]

@@ -122,7 +122,7 @@ fn a_question_about_all_files_waits_for_news() {
         .iter()
         .map(|it| json!({ "uri": it["uri"], "value": it["resultId"] }))
         .collect();
-    let id = client.post("workspace/diagnostic", json!({ "previousResultIds": known }));
+    client.post("workspace/diagnostic", json!({ "previousResultIds": known }));
     client.ask("shutdown", Value::Null);
     client.notify("exit", Value::Null);
     assert_eq!(client.ended(), Ended::Properly);

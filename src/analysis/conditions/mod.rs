@@ -4,10 +4,10 @@
 //! are respected: a rising edge is of a bit that is 1, a falling one of a bit that is 0; the comparisons of one term with
 //! constants, and the bits that are extracted from it, agree with some value of the term; two terms stand in one relation.
 //!
-//! A question of few atoms is answered by a truth table in machine words ([`table`]), one of many by a SAT solver
-//! ([`solver`]); what they ask, and the laws, is one [`problem`]. What is too large is said to be not decided. The answer is
-//! exact but where a [`Witness`] says that it assumed something: two terms that are compared with one another, computed
-//! values, and words that overlap are taken as free of one another.
+//! A question that leaves no choice is answered by the laws alone, one of few atoms by a truth table in machine words
+//! ([`table`]), one of many by a SAT solver ([`solver`]); what they ask, and the laws, is one [`problem`]. What is too large
+//! is said to be not decided. The answer is exact but where a [`Witness`] says that it assumed something: two terms that are
+//! compared with one another, computed values, and words that overlap are taken as free of one another.
 
 mod problem;
 mod solver;
@@ -108,6 +108,7 @@ impl<'a> Space<'a> {
     pub fn of(model: &'a UnitModel) -> Self {
         let family = match model.language {
             Language::Awl(_) => Family::Step7,
+            Language::Step5(_) | Language::Step5Symbols => Family::Step5,
             language if language.is_pl7_2() => Family::Pl72,
             _ => Family::Pl7,
         };
@@ -118,6 +119,9 @@ impl<'a> Space<'a> {
     pub fn solve(&self, wanted: &[(ExprId, bool)]) -> Answer {
         let question = Question { wanted, never: &[] };
         let Some(problem) = Problem::new(self, &question) else { return Answer::NotDecided };
+        if let Some(answer) = problem.forced(&question) {
+            return answer;
+        }
         match Table::new(&problem) {
             Some(table) => table.answer(&question),
             None => problem.solve(&question),
@@ -186,13 +190,17 @@ impl<'a> Space<'a> {
 
     fn decide(&self, question: &Question<'_>) -> Verdict {
         let Some(problem) = Problem::new(self, question) else { return Verdict::NotDecided };
-        match Table::new(&problem) {
-            Some(table) => table.decide(question),
-            None => match problem.solve(question) {
-                Answer::Never => Verdict::Never,
-                Answer::Possible(_) => Verdict::Possible,
-                Answer::NotDecided => Verdict::NotDecided,
+        let answer = match problem.forced(question) {
+            Some(answer) => answer,
+            None => match Table::new(&problem) {
+                Some(table) => return table.decide(question),
+                None => problem.solve(question),
             },
+        };
+        match answer {
+            Answer::Never => Verdict::Never,
+            Answer::Possible(_) => Verdict::Possible,
+            Answer::NotDecided => Verdict::NotDecided,
         }
     }
 
@@ -371,7 +379,7 @@ impl<'a> Space<'a> {
         let is_held = bit.is_fixed() && word.is_fixed() && word.footprint.contains(&bit.footprint);
         let at = bit.footprint.start.checked_sub(word.footprint.start).filter(|_| is_held)?;
         // Siemens words have their most significant byte first.
-        Some(if self.family == Family::Step7 { (width / 8 - 1 - at / 8) * 8 + at % 8 } else { at })
+        Some(if self.family.has_blocks() { (width / 8 - 1 - at / 8) * 8 + at % 8 } else { at })
     }
 }
 

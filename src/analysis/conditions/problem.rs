@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Given, Question, Space, Witness};
+use super::{Answer, Given, Question, Space, Witness};
 use crate::model::expr::{Comparison, Expr, ExprId, ObjectId};
 use crate::model::object::{Object, Type};
 
@@ -290,6 +290,33 @@ impl<'s, 'a> Problem<'s, 'a> {
             ties.extend(Some(tie).filter(|it| it.atoms.len() > 1));
         }
         Some(ties)
+    }
+
+    /// The answer to a question that leaves no choice: atoms, or their opposites, that all have to hold. `None` of any other.
+    pub(super) fn forced(&self, question: &Question<'_>) -> Option<Answer> {
+        if !question.never.is_empty() {
+            return None;
+        }
+        let mut values = vec![None; self.atoms.len()];
+        let mut open: Vec<(usize, bool)> = question.wanted.iter().map(|&(id, value)| (self.node(id), value)).collect();
+        while let Some((node, value)) = open.pop() {
+            match (self.gates[node], value) {
+                (Gate::Constant(it), _) if it != value => return Some(Answer::Never),
+                (Gate::Constant(_), _) => {}
+                (Gate::Not(a), _) => open.push((a, !value)),
+                (Gate::And(a, b), true) | (Gate::Or(a, b), false) => open.extend([(a, value), (b, value)]),
+                (Gate::And(..) | Gate::Or(..) | Gate::Xor(..), _) => return None,
+                (Gate::Atom(at), _) if values[at].replace(value).is_some_and(|before| before != value) => {
+                    return Some(Answer::Never);
+                }
+                (Gate::Atom(_), _) => {}
+            }
+        }
+        let breaks = |[(a, x), (b, y)]: [(usize, bool); 2]| values[a] == Some(x) && values[b] == Some(y);
+        if self.edge_laws().into_iter().any(breaks) {
+            return Some(Answer::Never);
+        }
+        Some(self.explain(&values).map_or(Answer::Never, Answer::Possible))
     }
 
     /// Values of all nodes as far as those of the atoms tell.

@@ -10,6 +10,7 @@ mod ladder;
 mod pl7;
 mod pl72;
 mod st;
+mod step5_symbols;
 mod work;
 mod xref;
 
@@ -22,10 +23,11 @@ use crate::target::pl72::BLOCKS;
 /// What the code of a unit does. `text` is the tree's text. Total: what is not understood leaves no statement.
 pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Language) -> UnitModel {
     match language {
-        Language::Awl(mnemonics) => awl::lower(root, entity, mnemonics),
+        Language::Awl(_) | Language::Step5(_) => awl::lower(root, entity, language),
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => exchange::lower(root, text, entity),
+        Language::Step5Symbols => step5_symbols::lower(root, entity),
         Language::Pl7Xref => xref::lower(root, entity),
         Language::Pl7Ld | Language::Pl72Ld => ladder::lower(root, text, entity, language),
         Language::Pl7Gr7 | Language::Sfc | Language::Pl72Gr7 | Language::Pl72Sfc => {

@@ -5,6 +5,7 @@
 mod address;
 pub mod pl7;
 pub mod pl72;
+pub mod step5;
 pub mod step7;
 
 use smol_str::SmolStr;

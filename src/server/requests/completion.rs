@@ -20,6 +20,7 @@ use crate::server::describe;
 use crate::server::snapshot::Snapshot;
 use crate::syntax::awl::instruction as awl;
 use crate::syntax::pl7::{functions, instructions};
+use crate::syntax::step5::instruction as step5;
 use crate::syntax::{Language, SyntaxKind};
 
 pub(super) struct Handler;
@@ -262,6 +263,11 @@ impl Found {
                     self.add(word, keyword, describe::instruction(word, language));
                 }
             }
+            Language::Step5(mnemonics) => {
+                for word in step5::all(mnemonics) {
+                    self.add(word, keyword, describe::instruction(word, language));
+                }
+            }
             Language::Pl7Il => {
                 for it in instructions::all() {
                     self.add(it.mnemonic, keyword, describe::instruction(it.mnemonic, language));
@@ -271,7 +277,7 @@ impl Found {
                 KEYWORDS.iter().for_each(|it| self.add(it, keyword, None));
             }
             Language::Pl7Ld | Language::Pl72Ld | Language::Pl72Gr7 | Language::Pl72Sfc => {}
-            Language::Exchange | Language::Pl7Xref => return,
+            Language::Exchange | Language::Step5Symbols | Language::Pl7Xref => return,
         }
         if matches!(language, Language::Pl7Il | Language::Pl7St | Language::Pl7Ld | Language::Pl7Gr7 | Language::Sfc) {
             for it in functions::all() {

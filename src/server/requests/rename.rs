@@ -180,8 +180,9 @@ fn is_free_symbol(it: InFile<'_>, program: Program<'_>, old: &SmolStr, new: &str
 /// The label as the language writes it.
 fn label(new: &str, language: Language, others: &[SmolStr]) -> Result<String, String> {
     let is_taken = |name: &str| others.iter().any(|it| it.eq_ignore_ascii_case(name));
-    if let Language::Awl(_) = language {
-        let limit = Target::any(Family::Step7).label_length();
+    if let Language::Awl(_) | Language::Step5(_) = language {
+        let family = if matches!(language, Language::Awl(_)) { Family::Step7 } else { Family::Step5 };
+        let limit = Target::any(family).label_length();
         let is_word = |it: char| it.is_ascii_alphanumeric() || it == '_';
         if !new.starts_with(|it: char| it.is_ascii_alphabetic() || it == '_') || !new.chars().all(is_word) {
             return Err(format!("`{new}` is no label: it is a letter, followed by letters and digits"));

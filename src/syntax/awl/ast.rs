@@ -3,7 +3,7 @@
 use rowan::TextRange;
 use smol_str::SmolStr;
 
-use super::instruction::{self, Op};
+use super::instruction::{self, Op, Words};
 use crate::syntax::node::nodes;
 use crate::syntax::{AstNode as _, Mnemonics, SyntaxKind, SyntaxToken};
 
@@ -165,6 +165,11 @@ impl<'t> VarDecl<'t> {
 
     pub fn type_ref(self) -> Option<TypeRef<'t>> {
         self.child()
+    }
+
+    /// Of a formal operand of STEP 5: its kind and its size.
+    pub fn type_refs(self) -> impl Iterator<Item = TypeRef<'t>> + use<'t> {
+        self.children()
     }
 
     pub fn struct_type(self) -> Option<StructType<'t>> {
@@ -335,12 +340,17 @@ impl<'t> Instr<'t> {
 
     /// `None` for a label alone and for an unknown mnemonic.
     pub fn op(self, mnemonics: Mnemonics) -> Option<Op> {
+        self.op_in(&instruction::WORDS, mnemonics)
+    }
+
+    /// As [`Self::op`], by the mnemonics of a language.
+    pub(in crate::syntax) fn op_in(self, words: &Words, mnemonics: Mnemonics) -> Option<Op> {
         let mut found = self.mnemonic_tokens();
         let first = found.next()?;
         // Nearly always the mnemonic is one word.
         match found.next() {
-            None => instruction::lookup(first.text(), mnemonics),
-            Some(_) => instruction::lookup(&self.mnemonic()?.text, mnemonics),
+            None => words.lookup(first.text(), mnemonics),
+            Some(_) => words.lookup(&self.mnemonic()?.text, mnemonics),
         }
     }
 

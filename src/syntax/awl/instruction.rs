@@ -279,6 +279,24 @@ pub enum Op {
     Nop,
     /// `BLD`: display instruction of the programming device, without effect.
     Display,
+    /// STEP 5 `P`, `PN`: checks a bit for 1 (`true`) or 0, whatever the RLO was.
+    TestBit(bool),
+    /// STEP 5 `SU`: sets a bit whatever the RLO is.
+    SetAlways,
+    /// STEP 5 `RU`.
+    ResetAlways,
+    /// STEP 5 `E DB`: makes a data block of as many words as accumulator 1 says.
+    Generate,
+    /// STEP 5 `B MW`: the word is added to the operand of the next instruction.
+    Process,
+    /// STEP 5 `STP`, `STS`: stops the controller.
+    Stop,
+    /// STEP 5 instructions to the system, such as `AS`: no effect on what the program computes.
+    Control,
+    /// STEP 5 `LIR`: from the place whose address is in accumulator 1.
+    LoadRegister,
+    /// STEP 5 `TIR`, `TNB`: to a place whose address is in an accumulator.
+    TransferRegister,
 }
 
 /// What kind of operand an instruction works on.
@@ -346,9 +364,12 @@ impl Op {
             | Self::Set
             | Self::Reset
             | Self::EdgePositive
-            | Self::EdgeNegative => Required(OperandKind::Bit),
+            | Self::EdgeNegative
+            | Self::TestBit(_)
+            | Self::SetAlways
+            | Self::ResetAlways => Required(OperandKind::Bit),
             Self::Or => Optional(OperandKind::Bit),
-            Self::Load => Required(OperandKind::Value),
+            Self::Load | Self::Process => Required(OperandKind::Value),
             Self::LoadBcd | Self::Enable => Required(OperandKind::TimerOrCounter),
             Self::Transfer => Required(OperandKind::Target),
             Self::Timer(_) => Required(OperandKind::Timer),
@@ -356,7 +377,8 @@ impl Op {
             Self::AddConstant => Required(OperandKind::Constant),
             Self::Jump(_) | Self::JumpList | Self::Loop => Required(OperandKind::Label),
             Self::Call | Self::CallUnconditional | Self::CallConditional => Required(OperandKind::CodeBlock),
-            Self::OpenDb => Required(OperandKind::DataBlock),
+            Self::OpenDb | Self::Generate => Required(OperandKind::DataBlock),
+            Self::LoadRegister | Self::TransferRegister => Required(OperandKind::Number),
             Self::WordLogic(..) => Optional(OperandKind::Constant),
             Self::Shift(Shift::RotateLeftThroughCc1 | Shift::RotateRightThroughCc1) => None,
             Self::Shift(_) => Optional(OperandKind::Number),
@@ -393,7 +415,9 @@ impl Op {
             | Self::Pop
             | Self::Enter
             | Self::Leave
-            | Self::SwapAddressRegisters => None,
+            | Self::SwapAddressRegisters
+            | Self::Stop
+            | Self::Control => None,
         }
     }
 }
@@ -401,7 +425,7 @@ impl Op {
 /// The mnemonic of `word` in one set, ignoring case. Parentheses belong to the mnemonic: `U(`, `)`, `MCR(`, `)MCR`.
 /// `NOP0` is `NOP 0` written together, which leaves it no operand.
 pub fn lookup(word: &str, mnemonics: Mnemonics) -> Option<Op> {
-    find(key(word.as_bytes())?, mnemonics)
+    WORDS.lookup(word, mnemonics)
 }
 
 /// Every mnemonic of a set.
@@ -415,47 +439,104 @@ pub fn all(mnemonics: Mnemonics) -> impl Iterator<Item = &'static str> {
 
 /// Like [`lookup`] for `word` with a `(` after it.
 pub(super) fn lookup_open(word: &str, mnemonics: Mnemonics) -> Option<Op> {
-    let key = key(word.as_bytes())?;
-    if key >> 56 != 0 {
-        return None;
-    }
-    find(key << 8 | u64::from(b'('), mnemonics)
+    WORDS.lookup_before(word, b'(', mnemonics)
 }
 
 /// The set that alone has `word`, if one does.
 pub(super) fn only_in(word: &[u8]) -> Option<Mnemonics> {
-    let entry = entry(key(word)?)?;
-    match (entry.german, entry.english) {
-        (Some(_), None) => Some(Mnemonics::German),
-        (None, Some(_)) => Some(Mnemonics::English),
-        _ => None,
-    }
+    WORDS.only_in(word)
 }
 
 /// Whether `word` is a mnemonic of any set.
 pub(super) fn is_mnemonic(word: &[u8]) -> bool {
-    key(word).and_then(entry).is_some()
+    WORDS.has(word)
 }
 
-fn find(key: u64, mnemonics: Mnemonics) -> Option<Op> {
-    let entry = entry(key)?;
-    match mnemonics {
-        Mnemonics::German => entry.german,
-        Mnemonics::English => entry.english,
-    }
+/// The mnemonics of a language in both sets: open addressing with at most half of the slots taken, so that probing ends.
+pub(in crate::syntax) struct Words([Entry; SLOTS]);
+
+#[derive(Clone, Copy)]
+struct Entry {
+    /// 0 for a free slot.
+    key: u64,
+    german: Option<Op>,
+    english: Option<Op>,
 }
 
-fn entry(key: u64) -> Option<&'static Entry> {
-    let mut slot = slot(key);
-    loop {
-        let entry = &TABLE[slot];
-        if entry.key == key {
-            return Some(entry);
+const SLOTS: usize = 1024;
+
+impl Words {
+    /// Words of both sets, then those of one.
+    pub(in crate::syntax) const fn new(both: &[(&str, Op)], german: &[(&str, Op)], english: &[(&str, Op)]) -> Self {
+        assert!((both.len() + german.len() + english.len()) * 2 < SLOTS);
+        let mut table = [Entry { key: 0, german: None, english: None }; SLOTS];
+        let mut at = 0;
+        while at < both.len() {
+            insert(&mut table, both[at].0, Some(both[at].1), Some(both[at].1));
+            at += 1;
         }
-        if entry.key == 0 {
+        let mut at = 0;
+        while at < german.len() {
+            insert(&mut table, german[at].0, Some(german[at].1), None);
+            at += 1;
+        }
+        let mut at = 0;
+        while at < english.len() {
+            insert(&mut table, english[at].0, None, Some(english[at].1));
+            at += 1;
+        }
+        Self(table)
+    }
+
+    /// The mnemonic of `word` in one set, ignoring case.
+    pub(in crate::syntax) fn lookup(&self, word: &str, mnemonics: Mnemonics) -> Option<Op> {
+        self.find(key(word.as_bytes())?, mnemonics)
+    }
+
+    /// Like [`Self::lookup`] for `word` with one more character after it.
+    pub(in crate::syntax) fn lookup_before(&self, word: &str, last: u8, mnemonics: Mnemonics) -> Option<Op> {
+        let key = key(word.as_bytes())?;
+        if key >> 56 != 0 {
             return None;
         }
-        slot = (slot + 1) % SLOTS;
+        self.find(key << 8 | u64::from(last), mnemonics)
+    }
+
+    /// The set that alone has `word`, if one does.
+    pub(in crate::syntax) fn only_in(&self, word: &[u8]) -> Option<Mnemonics> {
+        let entry = self.entry(key(word)?)?;
+        match (entry.german, entry.english) {
+            (Some(_), None) => Some(Mnemonics::German),
+            (None, Some(_)) => Some(Mnemonics::English),
+            _ => None,
+        }
+    }
+
+    /// Whether `word` is a mnemonic of any set.
+    pub(in crate::syntax) fn has(&self, word: &[u8]) -> bool {
+        key(word).and_then(|it| self.entry(it)).is_some()
+    }
+
+    fn find(&self, key: u64, mnemonics: Mnemonics) -> Option<Op> {
+        let entry = self.entry(key)?;
+        match mnemonics {
+            Mnemonics::German => entry.german,
+            Mnemonics::English => entry.english,
+        }
+    }
+
+    fn entry(&self, key: u64) -> Option<&Entry> {
+        let mut slot = slot(key);
+        loop {
+            let entry = &self.0[slot];
+            if entry.key == key {
+                return Some(entry);
+            }
+            if entry.key == 0 {
+                return None;
+            }
+            slot = (slot + 1) % SLOTS;
+        }
     }
 }
 
@@ -473,42 +554,8 @@ const fn key(word: &[u8]) -> Option<u64> {
     if key == 0 { None } else { Some(key) }
 }
 
-#[derive(Clone, Copy)]
-struct Entry {
-    /// 0 for a free slot.
-    key: u64,
-    german: Option<Op>,
-    english: Option<Op>,
-}
-
-/// Open addressing with at most half of the slots taken, so that probing ends.
-const SLOTS: usize = 1024;
-const _: () = assert!((BOTH.len() + GERMAN.len() + ENGLISH.len()) * 2 < SLOTS);
-
 const fn slot(key: u64) -> usize {
     (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 54) as usize
-}
-
-static TABLE: [Entry; SLOTS] = build();
-
-const fn build() -> [Entry; SLOTS] {
-    let mut table = [Entry { key: 0, german: None, english: None }; SLOTS];
-    let mut at = 0;
-    while at < BOTH.len() {
-        insert(&mut table, BOTH[at].0, Some(BOTH[at].1), Some(BOTH[at].1));
-        at += 1;
-    }
-    let mut at = 0;
-    while at < GERMAN.len() {
-        insert(&mut table, GERMAN[at].0, Some(GERMAN[at].1), None);
-        at += 1;
-    }
-    let mut at = 0;
-    while at < ENGLISH.len() {
-        insert(&mut table, ENGLISH[at].0, None, Some(ENGLISH[at].1));
-        at += 1;
-    }
-    table
 }
 
 const fn insert(table: &mut [Entry; SLOTS], word: &str, german: Option<Op>, english: Option<Op>) {
@@ -527,6 +574,8 @@ const fn insert(table: &mut [Entry; SLOTS], word: &str, german: Option<Op>, engl
         table[slot].english = english;
     }
 }
+
+pub(super) static WORDS: Words = Words::new(BOTH, GERMAN, ENGLISH);
 
 /// Same word and meaning in both sets.
 const BOTH: &[(&str, Op)] = {

@@ -1,0 +1,20 @@
+//! B007: a STEP 5 block without `BE`.
+
+use rowan::TextRange;
+
+use crate::lint::{Sink, UnitCx};
+use crate::syntax::awl::ast::Instr;
+use crate::syntax::awl::instruction::Op;
+use crate::syntax::step5::instruction::op;
+use crate::syntax::{AstNode as _, Language, SyntaxKind};
+
+pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    let Language::Step5(mnemonics) = cx.model.language else { return };
+    let Some(kind) = cx.model.entity.block_kind().filter(|it| !it.is_data()) else { return };
+    let mut instrs =
+        cx.parse.syntax().descendants().filter(|it| it.kind() == SyntaxKind::Instr).filter_map(Instr::cast);
+    let is_cut = cx.nodes(SyntaxKind::Error).next().is_some();
+    if !is_cut && !instrs.any(|it| op(it, mnemonics) == Some(Op::BlockEnd)) {
+        sink.report(cx.model.heading(), format!("this {} has no `BE`", kind.as_str()));
+    }
+}

@@ -1,0 +1,502 @@
+//! Statement list to the model: symbolic execution of the RLO, the nesting stack, the accumulators and the data block
+//! registers, instruction by instruction. STEP 5 is read into the same machine; `step5` has what is its own.
+//!
+//! Facts about the machine (S7-300/400, two accumulators: S7:364-366): a logic string starts with a *first check*,
+//! which overwrites the RLO; `=`, `S`, `R`, timer and counter instructions, conditional jumps and block calls end it,
+//! and after them the RLO stays readable. `L`, `T` and arithmetic neither read nor change it (S7:357). `SET`, `CLR` and
+//! comparisons overwrite it (S7:447). A conditional jump or block end leaves RLO 1 behind.
+
+mod accumulators;
+mod calls;
+mod flow;
+mod operands;
+mod rlo;
+mod step5;
+
+use rowan::TextRange;
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
+use super::builder::{Builder, index};
+use crate::model::UnitModel;
+use crate::model::entity::Entity;
+use crate::model::expr::{ExprId, Exprs, Operator};
+use crate::model::object::Type;
+use crate::model::unit::{Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, StatementKind};
+use crate::syntax::awl::ast;
+use crate::syntax::awl::instruction::{ArithOp, JumpIf, LogicOp, Op, Shift};
+use crate::syntax::{AstNode as _, Language, SyntaxElement, SyntaxKind, SyntaxNode};
+use crate::target;
+
+use accumulators::{Accumulator, Load, comparison};
+use calls::{OpenBlock, instance_of};
+use flow::{Arrival, back_targets, label};
+use operands::Operand;
+use rlo::{LogicString, Nest, Rlo, RloState};
+
+/// Lowers one block or listing.
+pub fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitModel {
+    let heading = heading(root);
+    let mut machine = Machine {
+        b: Builder::new(entity, language, heading, root.text_range().len()),
+        language,
+        rlo: Rlo { state: RloState::FromCaller, value: Exprs::TRUE },
+        fresh: true,
+        or_base: None,
+        nesting: Vec::new(),
+        string: None,
+        accumulators: [Accumulator::entry(), Accumulator::entry()],
+        loads: Vec::new(),
+        br: Exprs::FALSE,
+        open: OpenBlock::default(),
+        arrivals: FxHashMap::default(),
+        back_targets: FxHashSet::default(),
+        operands: FxHashMap::default(),
+        declared: FxHashMap::default(),
+        closed: false,
+        last_load: None,
+        jump_list: false,
+        capitals: step5::writes_capitals(root),
+        processed: false,
+        modified: false,
+        writing: false,
+        on_words: false,
+    };
+    machine.br = machine.b.exprs().opaque();
+    for child in root.children() {
+        match child.kind() {
+            SyntaxKind::Block | SyntaxKind::Listing => machine.block(child),
+            _ => {}
+        }
+    }
+    machine.finish()
+}
+
+struct Machine {
+    b: Builder,
+    language: Language,
+    rlo: Rlo,
+    /// The next check is a first check.
+    fresh: bool,
+    /// AND terms before an `O` without operand.
+    or_base: Option<ExprId>,
+    nesting: Vec<Nest>,
+    string: Option<LogicString>,
+    accumulators: [Accumulator; 2],
+    loads: Vec<Load>,
+    br: ExprId,
+    open: OpenBlock,
+    arrivals: FxHashMap<SmolStr, Arrival>,
+    back_targets: FxHashSet<SmolStr>,
+    operands: FxHashMap<SmolStr, Operand>,
+    /// Names that the block declares, in lower case.
+    declared: FxHashMap<SmolStr, Type>,
+    /// The block's end was read, so that what is left over is really lost.
+    closed: bool,
+    /// The instruction before, when it was a load.
+    last_load: Option<u32>,
+    /// The unconditional jumps read now are the entries of a jump list.
+    jump_list: bool,
+    /// STEP 5: mnemonics are written in capitals, so that what is not is a symbol.
+    capitals: bool,
+    /// STEP 5: the instruction before adds a word to the operand of this one; of the next one.
+    modified: bool,
+    processed: bool,
+    /// The instruction writes to its operand.
+    writing: bool,
+    /// The instruction works on bytes or words.
+    on_words: bool,
+}
+
+impl Machine {
+    fn block(&mut self, block: SyntaxNode<'_>) {
+        self.closed = block.kind() == SyntaxKind::Block;
+        self.declarations(block);
+        self.b.model.instance_of = instance_of(block);
+        for init in block.children().filter_map(ast::DataInit::cast) {
+            self.initial_value(init.value());
+        }
+        let back_targets = back_targets(block, self.language);
+        self.b.set_back_targets(back_targets.clone());
+        self.back_targets = back_targets;
+        for network in block.children().filter(|it| it.kind() == SyntaxKind::Network) {
+            self.b.next_network();
+            for element in network.children_with_tokens() {
+                match element.kind() {
+                    SyntaxKind::Instr => {
+                        if let Some(instr) = element.into_node().and_then(ast::Instr::cast) {
+                            self.instruction(&instr);
+                        }
+                    }
+                    SyntaxKind::Error | SyntaxKind::Elision => self.forget(),
+                    _ => {}
+                }
+            }
+        }
+        self.hollows(block);
+    }
+
+    /// Notes networks with nothing below their head. A remark there is part of the block.
+    fn hollows(&mut self, block: SyntaxNode<'_>) {
+        let code = [SyntaxKind::Instr, SyntaxKind::Error, SyntaxKind::Elision, SyntaxKind::Comment];
+        // The head of the last network, while nothing was found below it.
+        let mut bare: Option<TextRange> = None;
+        for element in block.children_with_tokens() {
+            match element {
+                SyntaxElement::Token(it) if it.kind() == SyntaxKind::Comment => bare = None,
+                SyntaxElement::Token(_) => {}
+                SyntaxElement::Node(it) => {
+                    self.hollow(bare.take());
+                    let header = ast::Network::cast(it).and_then(ast::Network::header);
+                    let head = header.and_then(|it| it.syntax().descendant_tokens().find(|it| !it.kind().is_trivia()));
+                    let is_bare = !it.children_with_tokens().any(|it| code.contains(&it.kind()));
+                    bare = head.filter(|_| is_bare).map(|it| it.text_range());
+                }
+            }
+        }
+        self.hollow(bare);
+    }
+
+    fn hollow(&mut self, head: Option<TextRange>) {
+        if let Some(range) = head {
+            self.b.model.hollows.push(Hollow { kind: HollowKind::Network, range });
+        }
+    }
+
+    fn finish(mut self) -> UnitModel {
+        let end = self.b.model.anchors.first().copied().unwrap_or_default();
+        if self.closed {
+            if self.b.is_reachable() {
+                self.discard(end);
+            }
+            self.hand_over();
+        } else {
+            self.keep_accumulators();
+        }
+        for nest in &self.nesting {
+            self.b.oddity(OddityKind::UnclosedParenthesis, nest.range, "(");
+        }
+        self.dead_loads();
+        self.b.finish()
+    }
+
+    /// Something unread stands here: nothing is known any more, and nothing is lost.
+    fn forget(&mut self) {
+        self.string = None;
+        let value = self.b.exprs().opaque();
+        self.rlo = Rlo { state: RloState::Known, value };
+        self.fresh = true;
+        self.or_base = None;
+        self.keep_accumulators();
+        self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];
+        self.open.shared = Some(None);
+        self.b.model.has_gaps = true;
+        self.b.wipe_by_call();
+        if !self.b.is_reachable() {
+            // A label may be part of it.
+            let path = self.b.exprs().opaque();
+            self.b.enter(path, None);
+        }
+        self.last_load = None;
+        self.jump_list = false;
+    }
+
+    fn instruction(&mut self, instr: &ast::Instr) {
+        if let Some((text, range)) = label(instr) {
+            self.last_load = None;
+            self.jump_list = false;
+            self.label(&text, range);
+        }
+        let Some(range) = instruction_range(instr) else { return };
+        let broken = instr.syntax().children().any(|it| it.kind() == SyntaxKind::Error);
+        let Some(op) = op_of(instr, self.language).filter(|_| !broken) else {
+            self.b.instruction(range);
+            self.forget();
+            return;
+        };
+        match op {
+            Op::Nop | Op::Display | Op::BlockEnd => self.b.idle_instruction(),
+            _ => self.b.instruction(range),
+        }
+        if !matches!(op, Op::Load | Op::LoadBcd) {
+            self.last_load = None;
+        }
+        self.modified = std::mem::take(&mut self.processed);
+        self.writing = op == Op::Transfer;
+        self.on_words = matches!(op, Op::Load | Op::Transfer);
+        self.jump_list &= op == Op::Jump(JumpIf::Always);
+        match op {
+            Op::And | Op::AndNot | Op::OrNot | Op::Xor | Op::XorNot => self.bit_check(op, instr, range),
+            Op::Or if instr.operand().is_some() => self.bit_check(op, instr, range),
+            Op::Or => {
+                let base = self.rlo_value();
+                self.or_base = Some(base);
+                self.rlo.value = Exprs::TRUE;
+            }
+            Op::AndOpen | Op::AndNotOpen | Op::OrOpen | Op::OrNotOpen | Op::XorOpen | Op::XorNotOpen => {
+                let nest = Nest {
+                    op,
+                    range,
+                    rlo: self.rlo,
+                    fresh: self.fresh,
+                    or_base: self.or_base.take(),
+                    string: self.string.take(),
+                };
+                self.nesting.push(nest);
+                let depth = index(self.nesting.len());
+                if !self.is_step5() && depth > target::step7::PARENTHESIS_DEPTH.value {
+                    self.b.oddity(OddityKind::ParenthesisDepth(depth), range, "(");
+                }
+                self.fresh = true;
+            }
+            Op::Close => self.close(range),
+            Op::Assign => {
+                let rlo = self.use_rlo(range, &mnemonic_text(instr));
+                if let Some((object, at)) = self.object_operand(instr) {
+                    self.b.assign(object, false, rlo, at, range);
+                    self.note_write(object);
+                }
+                self.limit();
+            }
+            Op::Set | Op::Reset => self.set_or_reset(op, instr, range),
+            Op::NegateRlo => {
+                let rlo = self.rlo_value();
+                self.or_base = None;
+                let value = self.b.exprs().not(rlo);
+                self.rlo.value = value;
+            }
+            Op::SetRlo | Op::ClearRlo => {
+                self.discard(range);
+                self.rlo = Rlo { state: RloState::Known, value: Exprs::bool(op == Op::SetRlo) };
+                self.fresh = true;
+                self.or_base = None;
+            }
+            Op::SaveRlo => {
+                // SAVE after a call keeps what the called block answered: its use is the point.
+                self.br = self.rlo_value();
+                self.limit();
+            }
+            Op::EdgePositive | Op::EdgeNegative => {
+                let was_fresh = self.fresh;
+                self.use_rlo(range, &mnemonic_text(instr));
+                if let Some((object, at)) = self.object_operand(instr) {
+                    self.b.touch(object, Mode::EdgeMemory, at);
+                    self.note_write(object);
+                }
+                let value = self.b.exprs().opaque();
+                self.or_base = None;
+                if was_fresh {
+                    self.string = None;
+                }
+                self.overwrite(value, range);
+            }
+            Op::Load | Op::LoadBcd => self.load_instruction(instr, range),
+            Op::Transfer => {
+                self.ignores_rlo(range, instr);
+                let value = self.accumulator(0);
+                if let Some((object, at)) = self.object_operand(instr) {
+                    self.b.store(object, value, at, range);
+                    self.note_write(object);
+                }
+            }
+            Op::Timer(_) => {
+                let rlo = self.use_rlo(range, &mnemonic_text(instr));
+                let duration = self.accumulator(0);
+                if let Some((object, at)) = self.object_operand(instr) {
+                    self.b.drive(object, Pin::Start, rlo, Some(duration), at, range);
+                }
+                self.limit();
+            }
+            Op::Enable | Op::CountUp | Op::CountDown => {
+                let rlo = self.use_rlo(range, &mnemonic_text(instr));
+                let pin = match op {
+                    Op::CountUp => Pin::Up,
+                    Op::CountDown => Pin::Down,
+                    _ => Pin::Enable,
+                };
+                if let Some((object, at)) = self.object_operand(instr) {
+                    self.b.drive(object, pin, rlo, None, at, range);
+                }
+                self.limit();
+            }
+            Op::Compare(relation, _) => {
+                let (left, right) = self.two_operands(range, instr);
+                let value = self.b.exprs().compare(comparison(relation), left, right);
+                self.discard(range);
+                self.or_base = None;
+                self.fresh = true;
+                self.overwrite(value, range);
+            }
+            Op::Arithmetic(op, _) => {
+                self.ignores_rlo(range, instr);
+                let (left, right) = self.two_operands(range, instr);
+                let operator = match op {
+                    ArithOp::Add => Operator::Add,
+                    ArithOp::Sub => Operator::Sub,
+                    ArithOp::Mul => Operator::Mul,
+                    ArithOp::Div => Operator::Div,
+                };
+                let value = self.b.exprs().binary(operator, left, right);
+                self.result(value);
+            }
+            Op::Modulo => {
+                self.ignores_rlo(range, instr);
+                let (left, right) = self.two_operands(range, instr);
+                let value = self.b.exprs().binary(Operator::Rem, left, right);
+                self.result(value);
+            }
+            Op::AddConstant => {
+                self.ignores_rlo(range, instr);
+                let left = self.accumulator(0);
+                let right = self.constant_operand(instr);
+                let value = self.b.exprs().binary(Operator::Add, left, right);
+                self.result(value);
+            }
+            Op::WordLogic(logic, _) => {
+                self.ignores_rlo(range, instr);
+                let operator = match logic {
+                    LogicOp::And => Operator::And,
+                    LogicOp::Or => Operator::Or,
+                    LogicOp::Xor => Operator::Xor,
+                };
+                let (left, right) = if instr.operand().is_some() {
+                    (self.accumulator(0), self.constant_operand(instr))
+                } else {
+                    self.two_operands(range, instr)
+                };
+                let value = self.b.exprs().binary(operator, left, right);
+                self.result(value);
+            }
+            Op::Shift(shift) => {
+                self.ignores_rlo(range, instr);
+                if instr.operand().is_none()
+                    && !matches!(shift, Shift::RotateLeftThroughCc1 | Shift::RotateRightThroughCc1)
+                {
+                    // How far is in accumulator 2.
+                    self.want_two(range, instr);
+                    self.use_loads(1);
+                }
+                self.opaque_result();
+            }
+            Op::Convert(_) | Op::Real(_) => {
+                self.ignores_rlo(range, instr);
+                self.opaque_result();
+            }
+            Op::Increment | Op::Decrement => {
+                self.ignores_rlo(range, instr);
+                let left = self.accumulator(0);
+                let right = self.constant_operand(instr);
+                let operator = if op == Op::Increment { Operator::Add } else { Operator::Sub };
+                let value = self.b.exprs().binary(operator, left, right);
+                self.result(value);
+            }
+            Op::SwapAccumulators => self.accumulators.swap(0, 1),
+            Op::Push => {
+                self.lose(1, range);
+                self.accumulators[1] = self.accumulators[0].clone();
+            }
+            Op::Pop => {
+                self.lose(0, range);
+                self.accumulators[0] = self.accumulators[1].clone();
+            }
+            Op::Enter | Op::Leave => {
+                self.keep_accumulators();
+                self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];
+            }
+            Op::LoadAddressRegister(_) => self.address_register(instr),
+            Op::AddAddressRegister(_) => self.address_register(instr),
+            Op::TransferAddressRegister(_) => {
+                if let Some((object, at)) = self.object_operand(instr) {
+                    let value = self.b.exprs().opaque();
+                    self.b.store(object, value, at, range);
+                    self.note_write(object);
+                } else if instr.operand().is_none() {
+                    let value = self.b.exprs().opaque();
+                    self.load(value, range, mnemonic_text(instr));
+                    // What a register holds is there for the taking: losing it loses nothing.
+                    self.use_loads(0);
+                }
+            }
+            Op::SwapAddressRegisters | Op::Nop | Op::Display => {}
+            Op::Call | Op::CallUnconditional | Op::CallConditional => self.call(instr, op, range),
+            Op::BlockEnd | Op::BlockEndUnconditional => {
+                self.closed = true;
+                self.end(Exprs::TRUE, range);
+            }
+            Op::BlockEndConditional => {
+                let when = self.use_rlo(range, &mnemonic_text(instr));
+                self.limit();
+                self.rlo = Rlo { state: RloState::Known, value: Exprs::TRUE };
+                self.end(when, range);
+            }
+            Op::OpenDb => self.open_block(instr, range),
+            Op::SwapDb => self.open.shared = Some(None),
+            Op::McrOpen => {
+                self.use_rlo(range, "MCR(");
+                self.limit();
+                self.b.statement(StatementKind::Other, range);
+            }
+            Op::TestBit(_)
+            | Op::SetAlways
+            | Op::ResetAlways
+            | Op::Generate
+            | Op::Process
+            | Op::Stop
+            | Op::Control
+            | Op::LoadRegister
+            | Op::TransferRegister => self.step5_instruction(op, instr, range),
+            Op::McrClose | Op::McrActivate | Op::McrDeactivate => {}
+            Op::Jump(condition) => self.jump_instruction(condition, instr, range),
+            Op::JumpList => {
+                self.use_loads(0);
+                let when = self.b.exprs().opaque();
+                self.jump(instr, when, range);
+                self.jump_list = true;
+            }
+            Op::Loop => {
+                self.opaque_result();
+                let when = self.b.exprs().opaque();
+                let before = self.b.model.loops.len();
+                self.jump(instr, when, range);
+                // LOOP counts down to 0, which a plain jump does not.
+                for it in &mut self.b.model.loops[before..] {
+                    it.kind = LoopKind::For;
+                }
+            }
+        }
+    }
+}
+
+/// The block's header, or its first instruction.
+fn heading(root: SyntaxNode<'_>) -> TextRange {
+    let block = root.children().find(|it| matches!(it.kind(), SyntaxKind::Block | SyntaxKind::Listing));
+    let header = block.as_ref().and_then(|it| it.children().find_map(ast::BlockHeader::cast));
+    match header {
+        Some(header) => header.range(),
+        None => root.descendants().find_map(ast::Instr::cast).map(|it| it.range()).unwrap_or_default(),
+    }
+}
+
+/// What an instruction does; `None` for a label alone and for an unknown mnemonic.
+fn op_of(instr: &ast::Instr, language: Language) -> Option<Op> {
+    match language {
+        Language::Step5(mnemonics) => crate::syntax::step5::instruction::op(*instr, mnemonics),
+        Language::Awl(mnemonics) => instr.op(mnemonics),
+        _ => None,
+    }
+}
+
+fn mnemonic_text(instr: &ast::Instr) -> SmolStr {
+    instr.mnemonic().map(|it| it.text).unwrap_or_default()
+}
+
+/// From the mnemonic to the last operand; `None` for a label alone.
+fn instruction_range(instr: &ast::Instr) -> Option<TextRange> {
+    let start = instr.mnemonic_tokens().next()?.text_range();
+    let end = instr.arg_list().map(|it| it.range()).or_else(|| Some(instr.operands().last()?.range()));
+    let mnemonic = instr.mnemonic_tokens().last().map_or(start, |it| it.text_range());
+    Some(start.cover(mnemonic).cover(end.unwrap_or(start)))
+}
+
+#[cfg(test)]
+mod tests;
