@@ -157,6 +157,19 @@ fn parse(db: &dyn Db, unit: Unit<'_>) -> Parse {
     }
 }
 
+/// The model of a unit, for those who look at one, as with [`tree`].
+#[salsa::tracked(no_eq, lru = 32)]
+pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitModel> {
+    let (entity, language) = (unit.entity(db).clone(), unit.language(db));
+    Arc::new(lower::lower(tree(db, unit).syntax(), unit.text(db), entity, language))
+}
+
+/// Where the lines of a file start.
+#[salsa::tracked(no_eq, lru = 256)]
+pub fn lines(db: &dyn Db, file: SourceFile) -> LineIndex {
+    LineIndex::new(file.text(db))
+}
+
 /// What outlives the tree and the model of a unit.
 #[derive(Debug)]
 pub struct UnitAnalysis {
@@ -468,14 +481,14 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
 }
 
 /// The facts of a program's units, symbols resolved.
-fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Cow<'db, UnitFacts>> {
+pub fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Cow<'db, UnitFacts>> {
     let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
     let facts = symbols::resolve(symbol_table(db, program), &facts);
     if program.family(db) == Family::Step7 { fields::resolve(facts) } else { facts }
 }
 
 /// The index of a program, of its [`program_facts`].
-fn index<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Cow<'_, UnitFacts>]) -> ProgramIndex<'a> {
+pub fn index<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Cow<'_, UnitFacts>]) -> ProgramIndex<'a> {
     let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
     let partly_read = db.project().partly_read(db);
     if program.files(db).iter().any(|it| partly_read.iter().any(|folder| folder == folder_of(it.path(db)))) {
@@ -639,7 +652,7 @@ pub fn configuration_findings(db: &dyn Db) -> Vec<FileFinding> {
 }
 
 /// Where the sites of a program lie.
-struct Places<'db> {
+pub struct Places<'db> {
     db: &'db dyn Db,
     units: &'db [Unit<'db>],
     /// Offsets of the units, as far as their files were asked for.
@@ -647,11 +660,11 @@ struct Places<'db> {
 }
 
 impl<'db> Places<'db> {
-    fn new(db: &'db dyn Db, program: Program<'db>) -> Self {
+    pub fn new(db: &'db dyn Db, program: Program<'db>) -> Self {
         Self { db, units: program_units(db, program), offsets: FxHashMap::default() }
     }
 
-    fn of(&mut self, site: Site) -> Option<FilePlace> {
+    pub fn of(&mut self, site: Site) -> Option<FilePlace> {
         let project = self.db.project();
         if site.is_configured() {
             return Some(FilePlace {
@@ -680,7 +693,8 @@ fn qualify(db: &dyn Db, finding: &mut Finding<FilePlace>, layout: &[(Unit<'_>, u
     }
 }
 
-fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'db>> {
+/// The unit that holds a place, of those of [`layout`].
+pub fn unit_at<'db>(layout: &[(Unit<'db>, u32)], at: TextSize) -> Option<Unit<'db>> {
     let after = layout.partition_point(|it| it.1 <= u32::from(at));
     Some(layout.get(after.checked_sub(1)?)?.0)
 }
@@ -783,6 +797,42 @@ impl RootDatabase {
         files
     }
 
+    /// Adds a file that is no part of the project yet. It stays until the database goes.
+    pub fn add_file(&mut self, input: Input) -> SourceFile {
+        SourceFile::new(self, input.path, input.source.text, input.detected, None)
+    }
+
+    /// Says which files are the project; they come in the order of their paths.
+    pub fn set_project(&mut self, mut files: Vec<SourceFile>) {
+        files.sort_by(|a, b| a.path(self).cmp(b.path(self)));
+        if *files != *self.project().files(self) {
+            self.project().set_files(self).to(files);
+        }
+    }
+
+    pub fn set_settings(&mut self, settings: Settings) {
+        let old = self.project().settings(self);
+        if settings != *old || settings.source().text != old.source().text {
+            let configuration = self.project().configuration(self);
+            let source = settings.source();
+            if *source.path != *configuration.path(self) {
+                configuration.set_path(self).to(source.path.clone());
+            }
+            if source.text != *configuration.text(self) {
+                configuration.set_text(self).to(source.text.clone());
+            }
+            self.project().set_settings(self).to(settings);
+        }
+    }
+
+    /// Says what a file is.
+    pub fn set_detected(&mut self, file: SourceFile, detected: Detected) {
+        if file.detected(self) != detected {
+            file.set_known_spans(self).to(None);
+            file.set_detected(self).to(detected);
+        }
+    }
+
     /// Gives a file another text; nothing happens when it is the same.
     pub fn set_text(&mut self, file: SourceFile, text: impl Into<Arc<str>>) {
         let text = text.into();
@@ -808,6 +858,11 @@ impl Db for RootDatabase {
             None => unreachable!("`new` sets the project before it returns"),
         }
     }
+}
+
+/// Asks the database something; `None` when it was about to be written to, so that the answer would have been stale.
+pub fn unless_cancelled<T>(ask: impl FnOnce() -> T) -> Option<T> {
+    salsa::Cancelled::catch(AssertUnwindSafe(ask)).ok()
 }
 
 /// Names of the tracked functions that ran since the last call, such as `facts(Id(0))`.

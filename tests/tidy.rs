@@ -73,6 +73,12 @@ fn only_the_database_knows_salsa() {
 }
 
 #[test]
+fn only_the_server_knows_the_protocol() {
+    assert_absent("src", &["lsp_types", "lsp_server"], &["src/server/"]);
+    assert_absent("rules", &["lsp_types", "lsp_server", "crate::server"], &[]);
+}
+
+#[test]
 fn only_reports_and_the_command_line_do_output() {
     let words = ["println!", "eprintln!", "print!(", "dbg!", "io::stdout", "io::stderr"];
     assert_absent("src", &words, &["src/report/", "src/cli/", "src/main.rs"]);
@@ -82,7 +88,7 @@ fn only_reports_and_the_command_line_do_output() {
 #[test]
 fn only_walking_and_the_command_line_touch_files() {
     let words = ["std::fs", "fs::read", "fs::write", "File::open", "std::env", "std::net"];
-    assert_absent("src", &words, &["src/source/walk.rs", "src/cli/", "src/main.rs"]);
+    assert_absent("src", &words, &["src/source/walk.rs", "src/load/", "src/cli/", "src/main.rs"]);
     assert_absent("rules", &words, &[]);
 }
 

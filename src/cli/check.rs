@@ -9,12 +9,13 @@ use std::time::Instant;
 use clap::ValueEnum;
 use rustc_hash::FxHashMap;
 
-use super::config::{Configured, Loader};
+use super::config::Configured;
 use super::read::{self, Group};
 use super::{Colour, Exit, Failure, print};
 use crate::db;
 use crate::lint::settings::Overrides;
 use crate::lint::{Diagnostic, Location, Outcome, Severity, SourceView};
+use crate::load::Loader;
 use crate::report::{self, Format, Options, Summary};
 use crate::source::detect::Dialect;
 

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::config::{Configured, Loader};
+use super::config::Configured;
 use super::{Exit, Failure, complain, print, read};
 use crate::db::{self, ProgramDrawing};
 use crate::draw::{self, Drawing, Kind};
 use crate::lint::settings::Overrides;
 use crate::lint::{Unread, UnreadReason};
+use crate::load::Loader;
 
 #[derive(Debug, clap::Args)]
 #[command(

@@ -15,8 +15,10 @@ mod draw;
 mod read;
 mod rule;
 mod rules;
+mod server;
 mod tree;
 
+use crate::load::WrongConfig;
 use crate::source::detect::Dialect;
 
 /// Finds mistakes in PLC programs as they lie on disk: Schneider PL7 and PL7-2, Siemens STEP 7 (AWL) and STEP 5.
@@ -45,6 +47,8 @@ enum Command {
     Rules(rules::Arguments),
     /// Show the syntax tree of a file
     Tree(tree::Arguments),
+    /// Serve an editor: the language server, on standard input and output
+    Server(server::Arguments),
     /// Print a completion script for a shell
     Completions(completions::Arguments),
 }
@@ -91,6 +95,12 @@ enum Failure {
     Output(io::Error),
 }
 
+impl From<WrongConfig> for Failure {
+    fn from(error: WrongConfig) -> Self {
+        Self::Usage(error.to_string())
+    }
+}
+
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Output(error)
@@ -122,6 +132,7 @@ fn run() -> Exit {
         Command::Rule(arguments) => rule::run(&arguments, colour),
         Command::Rules(arguments) => rules::run(&arguments),
         Command::Tree(arguments) => tree::run(&arguments),
+        Command::Server(arguments) => server::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments, &mut Arguments::command()),
     };
     match result {

@@ -6,6 +6,7 @@
 //!
 //! Sizes and offsets are in bits, bit 0 of byte 0 first, as in [`Footprint`](super::object::Footprint).
 
+use std::fmt;
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
@@ -121,6 +122,26 @@ pub struct Field {
     pub ty: DataType,
     /// Place of the name, an index into the anchors of the unit's model.
     pub anchor: u32,
+}
+
+/// As a declaration has it, the parts of a structure left out.
+impl fmt::Display for DataType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Elementary(it) => f.write_str(it.name()),
+            Self::Text(longest) => write!(f, "STRING[{longest}]"),
+            Self::Array(bounds, of) => {
+                f.write_str("ARRAY[")?;
+                for (at, (first, last)) in bounds.iter().enumerate() {
+                    write!(f, "{}{first}..{last}", if at > 0 { ", " } else { "" })?;
+                }
+                write!(f, "] OF {of}")
+            }
+            Self::Struct(_) => f.write_str("STRUCT"),
+            Self::Named(name) => name.fmt(f),
+            Self::Unknown => f.write_str("?"),
+        }
+    }
 }
 
 impl DataType {

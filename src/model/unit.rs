@@ -14,7 +14,7 @@ use super::dfb::Interface;
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
-use super::layout::{DataType, Elementary};
+use super::layout::{DataType, Elementary, Field};
 use super::literal::{LiteralError, Value};
 use super::object::{AddressError, Object};
 use super::pl7_kinds::Kind;
@@ -623,6 +623,11 @@ impl UnitModel {
             Some(chart) => chart.action_at(access.anchor).is_some_and(|it| it.language == Some(CodeLanguage::St)),
             None => self.language == Language::Pl7St,
         }
+    }
+
+    /// What a block of STEP 7 or STEP 5 declares by itself.
+    pub fn fields(&self) -> &[Field] {
+        self.declared.as_ref().map_or(&[], DataType::fields)
     }
 
     /// Place of an anchor; the heading when there is none.

@@ -24,8 +24,7 @@ pub fn count_lines(text: &str) -> usize {
 pub struct Positions<'a> {
     outcome: &'a Outcome,
     indexes: Vec<OnceCell<LineIndex>>,
-    /// Of texts made of tables: offsets of the lines that name a module, and of those that number a place in it.
-    headings: Vec<OnceCell<[Vec<u32>; 2]>>,
+    headings: Vec<OnceCell<Headings>>,
 }
 
 /// A line of a project's tables.
@@ -81,19 +80,8 @@ impl<'a> Positions<'a> {
     /// where in the project. `None` for the text of a file.
     pub fn entry(&self, file: u32, range: TextRange) -> Option<Entry<'a>> {
         let view = self.file(file).filter(|it| it.made_of.is_some())?;
-        let headings = self.headings.get(file as usize)?;
-        let [modules, places] = headings.get_or_init(|| ["[", "@"].map(|mark| lines_with(&view.text, mark)));
-        let start = clamp(&view.text, range).start();
-        let text = line_at(&view.text, start.into()).trim_end_matches(';');
-        let above =
-            |lines: &[u32]| lines.get(lines.partition_point(|&it| it <= u32::from(start)).checked_sub(1)?).copied();
-        let module = above(modules);
-        let place = above(places).filter(|it| module.is_none_or(|module| module < *it));
-        let line = |at: u32| line_at(&view.text, at as usize);
-        let place = place.and_then(|it| line(it).strip_prefix('@'));
-        let module = module.map_or("", |it| line(it).strip_prefix("[XREF] ").unwrap_or(line(it)));
-        let is_heading = text.starts_with(['[', '@']);
-        Some(Entry { text: if is_heading { module } else { text }, module, place })
+        let headings = self.headings.get(file as usize)?.get_or_init(|| Headings::new(&view.text));
+        Some(headings.entry(&view.text, range))
     }
 
     /// The path and the span of a place; `None` when the run has no such file.
@@ -101,6 +89,34 @@ impl<'a> Positions<'a> {
         let range = clamp(&self.file(file)?.text, range);
         let index = self.index(file)?;
         Some(Span { start: index.line_col(range.start()), end: index.line_col(range.end()) })
+    }
+}
+
+/// Of a text made of tables: offsets of the lines that name a module, and of those that number a place in it.
+#[derive(Debug)]
+pub struct Headings {
+    modules: Vec<u32>,
+    places: Vec<u32>,
+}
+
+impl Headings {
+    pub fn new(text: &str) -> Self {
+        Self { modules: lines_with(text, "["), places: lines_with(text, "@") }
+    }
+
+    /// What stands at a place of the text, and where in the project.
+    pub fn entry<'a>(&self, text: &'a str, range: TextRange) -> Entry<'a> {
+        let start = clamp(text, range).start();
+        let own = line_at(text, start.into()).trim_end_matches(';');
+        let above =
+            |lines: &[u32]| lines.get(lines.partition_point(|&it| it <= u32::from(start)).checked_sub(1)?).copied();
+        let module = above(&self.modules);
+        let place = above(&self.places).filter(|it| module.is_none_or(|module| module < *it));
+        let line = |at: u32| line_at(text, at as usize);
+        let place = place.and_then(|it| line(it).strip_prefix('@'));
+        let module = module.map_or("", |it| line(it).strip_prefix("[XREF] ").unwrap_or(line(it)));
+        let is_heading = own.starts_with(['[', '@']);
+        Entry { text: if is_heading { module } else { own }, module, place }
     }
 }
 

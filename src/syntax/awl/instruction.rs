@@ -428,6 +428,15 @@ pub fn lookup(word: &str, mnemonics: Mnemonics) -> Option<Op> {
     WORDS.lookup(word, mnemonics)
 }
 
+/// Every mnemonic of a set.
+pub fn all(mnemonics: Mnemonics) -> impl Iterator<Item = &'static str> {
+    let own = match mnemonics {
+        Mnemonics::German => GERMAN,
+        Mnemonics::English => ENGLISH,
+    };
+    BOTH.iter().chain(own).map(|it| it.0)
+}
+
 /// Like [`lookup`] for `word` with a `(` after it.
 pub(super) fn lookup_open(word: &str, mnemonics: Mnemonics) -> Option<Op> {
     WORDS.lookup_before(word, b'(', mnemonics)

@@ -14,6 +14,15 @@ pub fn lookup(word: &str, mnemonics: Mnemonics) -> Option<Op> {
     WORDS.lookup(word, mnemonics)
 }
 
+/// Every mnemonic of a set.
+pub fn all(mnemonics: Mnemonics) -> impl Iterator<Item = &'static str> {
+    let own = match mnemonics {
+        Mnemonics::German => GERMAN,
+        Mnemonics::English => ENGLISH,
+    };
+    BOTH.iter().chain(own).map(|it| it.0)
+}
+
 /// Like [`lookup`] for `word` with `last` after it.
 pub(super) fn lookup_before(word: &str, last: u8, mnemonics: Mnemonics) -> Option<Op> {
     WORDS.lookup_before(word, last, mnemonics)

@@ -1,0 +1,268 @@
+//! What stands at a place, in terms of the program: what all requests about a position share.
+
+use std::borrow::Cow;
+
+use rowan::{TextRange, TextSize};
+use smol_str::SmolStr;
+
+use super::snapshot::InFile;
+use crate::analysis::Site;
+use crate::analysis::facts::UnitFacts;
+use crate::analysis::program::{GlobalUse, ProgramIndex};
+use crate::db::{self, FilePlace, Places, Program, Unit};
+use crate::model::UnitModel;
+use crate::model::layout::Field;
+use crate::model::object::{Class, Object, pl7};
+use crate::model::symbols::key;
+use crate::model::unit::Mode;
+use crate::syntax::{SyntaxKind, SyntaxToken};
+
+/// The unit that holds a place, in its program.
+pub(super) struct InUnit<'s> {
+    pub(super) it: InFile<'s>,
+    pub(super) unit: Unit<'s>,
+    /// Where the unit starts in the file.
+    pub(super) offset: TextSize,
+    /// The place, in the unit.
+    pub(super) at: TextSize,
+    pub(super) model: &'s UnitModel,
+}
+
+/// What a place names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum What {
+    /// An object of the unit, by index.
+    Object(u32),
+    /// A label or a jump to it.
+    Label { name: SmolStr, part: u32 },
+    /// A call, by index.
+    Call(u32),
+    /// A declaration of the unit, by index.
+    Declaration(u32),
+    /// A parameter or variable of a DFB type, by index.
+    Item(u32),
+    /// The declaration of a symbol, by index.
+    Symbol(u32),
+    /// A step of a chart, by index.
+    Step(u32),
+}
+
+/// What stands at a place, with its range in the unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Target {
+    pub(super) what: What,
+    pub(super) range: TextRange,
+}
+
+impl<'s> InUnit<'s> {
+    pub(super) fn at(it: InFile<'s>, at: TextSize) -> Option<Self> {
+        let layout = db::layout(it.db, it.file);
+        let units = layout.iter().enumerate().take_while(|(_, unit)| unit.1 <= u32::from(at));
+        // Behind the last character of a unit, the unit is still meant; before the first of the next, that one.
+        let (_, &(unit, offset)) = units.last()?;
+        let offset = TextSize::new(offset);
+        Some(Self { it, unit, offset, at: at.checked_sub(offset)?, model: db::model(it.db, unit) })
+    }
+
+    /// A range of the unit as one of the file.
+    pub(super) fn in_file(&self, range: TextRange) -> TextRange {
+        range.checked_add(self.offset).unwrap_or(range)
+    }
+
+    pub(super) fn text(&self, range: TextRange) -> &'s str {
+        self.unit.text(self.it.db).get(std::ops::Range::<usize>::from(range)).unwrap_or_default()
+    }
+
+    /// What stands at the place: of several things the shortest, of those the first.
+    pub(super) fn target(&self) -> Option<Target> {
+        let model = self.model;
+        let mut best: Option<Target> = None;
+        let mut offer = |range: TextRange, what: &dyn Fn() -> What| {
+            let is_better = range.contains_inclusive(self.at)
+                && !range.is_empty()
+                && best.as_ref().is_none_or(|it| range.len() < it.range.len());
+            if is_better {
+                best = Some(Target { what: what(), range });
+            }
+        };
+        let number = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+        for it in &model.labels {
+            offer(it.range, &|| What::Label { name: it.name.clone(), part: it.part });
+        }
+        for it in &model.jumps {
+            offer(it.range, &|| What::Label { name: it.label.clone(), part: it.part });
+        }
+        for (at, it) in model.calls.iter().enumerate() {
+            offer(model.place(it.anchor), &|| What::Call(number(at)));
+        }
+        for it in &model.accesses {
+            offer(model.place(it.anchor), &|| What::Object(it.object.0));
+        }
+        for (at, it) in model.fields().iter().enumerate() {
+            offer(model.place(it.anchor), &|| What::Declaration(number(at)));
+        }
+        for (at, it) in model.interface.iter().flat_map(|it| it.items.iter().enumerate()) {
+            offer(model.place(it.anchor), &|| What::Item(number(at)));
+        }
+        for (at, it) in model.symbols.iter().enumerate() {
+            offer(model.place(it.anchor), &|| What::Symbol(number(at)));
+        }
+        for (at, it) in model.chart.iter().flat_map(|it| it.steps.iter().enumerate()) {
+            offer(it.range, &|| What::Step(number(at)));
+        }
+        best
+    }
+
+    /// The token at the place that is no blank.
+    pub(super) fn token(&self) -> Option<SyntaxToken<'s>> {
+        let tree = db::tree(self.it.db, self.unit);
+        let tokens = tree.syntax().descendant_tokens();
+        let touching = tokens
+            .skip_while(|it| it.text_range().end() < self.at)
+            .take_while(|it| it.text_range().start() <= self.at)
+            .filter(|it| !matches!(it.kind(), SyntaxKind::Whitespace | SyntaxKind::Newline));
+        // Of two that meet there, the word counts, and else the one behind.
+        let tokens: Vec<SyntaxToken<'_>> = touching.collect();
+        tokens.iter().copied().find(|it| it.kind() == SyntaxKind::Ident).or(tokens.last().copied())
+    }
+
+    /// The program of the unit and the number of the unit in it.
+    pub(super) fn program(&self) -> Option<(Program<'s>, u32)> {
+        program_with(self.it, self.unit)
+    }
+}
+
+/// The program that a unit of the file belongs to, and its number there.
+pub(super) fn program_with<'s>(it: InFile<'s>, unit: Unit<'s>) -> Option<(Program<'s>, u32)> {
+    db::programs_of(it.db, it.file).iter().find_map(|&program| {
+        let at = db::program_units(it.db, program).iter().position(|it| *it == unit)?;
+        Some((program, u32::try_from(at).ok()?))
+    })
+}
+
+/// A program with its facts, which an index borrows from.
+pub(super) struct InProgram<'s> {
+    pub(super) it: InFile<'s>,
+    pub(super) program: Program<'s>,
+    facts: Vec<Cow<'s, UnitFacts>>,
+}
+
+impl<'s> InProgram<'s> {
+    pub(super) fn new(it: InFile<'s>, program: Program<'s>) -> Self {
+        Self { it, program, facts: db::program_facts(it.db, program) }
+    }
+
+    pub(super) fn index(&self) -> ProgramIndex<'_> {
+        db::index(self.it.db, self.program, &self.facts)
+    }
+
+    pub(super) fn places(&self) -> Places<'s> {
+        Places::new(self.it.db, self.program)
+    }
+}
+
+/// An object that a place names, as its program sees it.
+#[derive(Debug, Clone)]
+pub(super) struct Named {
+    /// With the address in place of a symbol.
+    pub(super) object: Object,
+    /// For an object that only its own unit knows: that unit.
+    pub(super) only_in: Option<u32>,
+}
+
+impl Named {
+    pub(super) fn new(cursor: &InUnit<'_>, target: &Target, unit: u32, index: &ProgramIndex<'_>) -> Option<Self> {
+        let model = cursor.model;
+        let facts = index.units.get(unit as usize)?;
+        let of_unit = |object: u32| {
+            let fact = facts.objects.get(object as usize)?;
+            Some(Self { object: fact.object.clone(), only_in: (fact.hash == 0).then_some(unit) })
+        };
+        let local = |name: &str| {
+            let found = facts.objects.iter().position(|it| is_local(&it.object) && is_named(&it.object, name));
+            found.and_then(|it| of_unit(u32::try_from(it).ok()?))
+        };
+        match &target.what {
+            What::Object(object) => of_unit(*object),
+            What::Declaration(at) => local(&model.fields().get(*at as usize)?.name),
+            What::Item(at) => local(&model.interface.as_ref()?.items.get(*at as usize)?.name),
+            What::Symbol(at) => {
+                let object = model.symbols.get(*at as usize)?.object.clone()?;
+                Some(Self { object, only_in: None })
+            }
+            What::Step(at) => {
+                let chart = model.chart.as_ref()?;
+                let bit = chart.steps.get(*at as usize)?.name.as_ref()?.bit(facts.chart.as_ref()?.graph);
+                Some(Self { object: pl7::parse(&bit).ok()?, only_in: None })
+            }
+            What::Label { .. } | What::Call(_) => None,
+        }
+    }
+
+    /// Uses of the object and of all that shares memory with it, with what is used.
+    pub(super) fn uses<'i, 'a>(&self, index: &'i ProgramIndex<'a>) -> Vec<(&'i Object, GlobalUse<'a>)>
+    where
+        'a: 'i,
+    {
+        let is_meant = |it: &Object| {
+            if self.object.is_fixed() && it.is_fixed() {
+                return it.footprint.overlaps(&self.object.footprint);
+            }
+            // Where an index leads is not known: what is written alike is meant.
+            !self.object.is_fixed()
+                && (it.indexed, it.ty) == (self.object.indexed, self.object.ty)
+                && it.footprint == self.object.footprint
+                && it.text == self.object.text
+        };
+        if let Some(unit) = self.only_in {
+            let Some(&facts) = index.units.get(unit as usize) else { return Vec::new() };
+            let uses = facts.uses.iter().filter_map(|it| {
+                let object = &facts.objects.get(it.object as usize)?.object;
+                is_meant(object).then_some((object, GlobalUse { unit, mode: it.mode, it }))
+            });
+            return uses.collect();
+        }
+        let objects = index.objects.iter().filter(|it| is_meant(it.object));
+        objects.flat_map(|it| it.uses.iter().map(move |used| (it.object, *used))).collect()
+    }
+}
+
+fn is_local(object: &Object) -> bool {
+    matches!(object.class, Class::LocalName | Class::Symbol)
+}
+
+fn is_named(object: &Object, name: &str) -> bool {
+    let text = object.text.trim_start_matches('#');
+    key(text.split(['.', '[', ':']).next().unwrap_or(text)) == key(name)
+}
+
+/// The declaration of a name of the unit itself.
+pub(super) fn declaration<'m>(model: &'m UnitModel, object: &Object) -> Option<&'m Field> {
+    if object.class != Class::LocalName {
+        return None;
+    }
+    model.fields().iter().find(|it| is_named(object, &it.name))
+}
+
+/// Where the symbol of an address is declared, or an instance of a DFB by its name.
+pub(super) fn symbol_places(program: &InProgram<'_>, index: &ProgramIndex<'_>, of: &Object) -> Vec<FilePlace> {
+    let mut places = program.places();
+    let mut found = Vec::new();
+    for (unit, facts) in (0..).zip(&index.units) {
+        for symbol in &facts.symbols {
+            let is_it = match &symbol.object {
+                Some(object) => *object == Object { text: object.text.clone(), ..of.clone() },
+                None => of.class == Class::Symbol && is_named(of, &symbol.name),
+            };
+            if is_it {
+                found.extend(places.of(Site { unit, anchor: symbol.anchor }));
+            }
+        }
+    }
+    found
+}
+
+/// Whether what is done may change the object.
+pub(super) fn writes(mode: Mode) -> bool {
+    mode.writes() || matches!(mode, Mode::Drive(_))
+}

@@ -1,0 +1,252 @@
+//! `textDocument/hover`: what stands at a position.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use lsp_types::{Contents, Hover, HoverParams, HoverRequest, MarkupContent, MarkupKind};
+use rowan::TextRange;
+use rustc_hash::FxHashSet;
+
+use super::{Answer, Handle};
+use crate::analysis::program::ProgramIndex;
+use crate::db;
+use crate::model::dfb::Role;
+use crate::model::object::{Class, Object};
+use crate::model::unit::{Mode, Section};
+use crate::server::cursor::{self, InProgram, InUnit, Named, Target, What};
+use crate::server::describe;
+use crate::server::requests::references;
+use crate::server::snapshot::{InFile, Snapshot};
+use crate::syntax::Language;
+
+pub(super) struct Handler;
+
+impl Handle for Handler {
+    type Request = HoverRequest;
+
+    fn handle(snapshot: &Snapshot, params: HoverParams) -> Answer<Self::Request> {
+        let position = params.text_document_position_params;
+        let Some(it) = snapshot.file(&position.text_document.uri) else { return Ok(None) };
+        let at = it.offset(position.position);
+        let mut parts = Vec::new();
+        let mut range: Option<TextRange> = None;
+        if let Some(cursor) = InUnit::at(it, at) {
+            let target = cursor.target();
+            let text = match &target {
+                Some(target) => of_target(&cursor, target),
+                None => None,
+            };
+            match (text, target) {
+                (Some(text), Some(target)) => {
+                    range = Some(cursor.in_file(target.range));
+                    parts.push(text);
+                }
+                _ => {
+                    if let Some(token) = cursor.token()
+                        && let Some(text) = describe::instruction(token.text(), cursor.unit.language(it.db))
+                    {
+                        range = Some(cursor.in_file(token.text_range()));
+                        parts.push(text);
+                    }
+                }
+            }
+        }
+        parts.extend(rules(&it, at));
+        let range = range.map(|range| it.range(range));
+        let value = parts.join("\n\n---\n\n");
+        Ok((!value.is_empty()).then_some(Hover {
+            contents: Contents::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value }),
+            range,
+        }))
+    }
+}
+
+/// The pages of the rules whose findings stand at a place, without their examples.
+fn rules(it: &InFile<'_>, at: rowan::TextSize) -> Vec<String> {
+    let mut seen: FxHashSet<&str> = FxHashSet::default();
+    let findings = db::file_findings(it.db, it.file).iter().filter(|it| it.suppressed.is_none());
+    let here = findings.filter(|it| it.finding.place.range.contains_inclusive(at)).map(|it| it.finding.rule);
+    let here = here.filter(|it| seen.insert(it.code));
+    let page = |rule: &'static crate::lint::Rule| {
+        format!(
+            "**{} ({})**: {}\n\n{}\n\n**Why**: {}\n\n**Instead**: {}",
+            rule.code,
+            rule.name,
+            rule.summary,
+            rule.what(),
+            rule.why(),
+            rule.help()
+        )
+    };
+    here.map(page).collect()
+}
+
+fn of_target(cursor: &InUnit<'_>, target: &Target) -> Option<String> {
+    let model = cursor.model;
+    if let What::Label { name, part } = &target.what {
+        let jumps = model.jumps.iter().filter(|it| it.label == *name && it.part == *part).count();
+        let labels = model.labels.iter().filter(|it| it.name == *name && it.part == *part).count();
+        let text = cursor.text(target.range);
+        return Some(match labels {
+            0 => format!("**{text}**: a label that is not there, with {}", count(jumps, "jump")),
+            _ => format!("**{text}**: label, with {}", count(jumps, "jump")),
+        });
+    }
+    let (program, unit) = cursor.program()?;
+    let program = InProgram::new(cursor.it, program);
+    let index = program.index();
+    if let Some(callee) = references::callee(cursor, target) {
+        return of_callee(cursor, target, &callee, &index);
+    }
+    let named = Named::new(cursor, target, unit, &index)?;
+    Some(of_object(cursor, target, &named, &program, &index))
+}
+
+fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+fn of_callee(
+    cursor: &InUnit<'_>,
+    target: &Target,
+    callee: &crate::model::unit::Callee,
+    index: &ProgramIndex<'_>,
+) -> Option<String> {
+    let text = cursor.text(target.range);
+    if let crate::model::unit::Callee::Function(name) = callee {
+        return describe::instruction(name, Language::Pl7St);
+    }
+    let calls: Vec<_> = index.calls.iter().filter(|it| it.it.callee == *callee).collect();
+    let unit = calls.iter().find_map(|it| it.target).and_then(|it| index.units.get(it as usize));
+    let mut out = format!("**{text}**: ");
+    match unit {
+        Some(unit) => {
+            let _ = write!(out, "`{}`, called in {}", unit.entity, count(calls.len(), "place"));
+            let fields = unit.declared.iter().flat_map(|it| it.fields());
+            for declared in fields.filter(|it| section(it.section).is_some()) {
+                let word = section(declared.section).unwrap_or_default();
+                let _ = write!(out, "\n- {word} `{} : {}`", declared.name, declared.ty);
+            }
+            for item in unit.interface.iter().flat_map(|it| &it.items).filter(|it| is_parameter(it.role)) {
+                let _ = write!(out, "\n- {} `{}`", item.role.describe(), item.name);
+            }
+        }
+        None => {
+            let _ = write!(out, "called in {}; the program does not hold it", count(calls.len(), "place"));
+        }
+    }
+    Some(out)
+}
+
+fn is_parameter(role: Role) -> bool {
+    matches!(role, Role::Input | Role::InOut | Role::Output)
+}
+
+fn section(section: Section) -> Option<&'static str> {
+    match section {
+        Section::Input => Some("input"),
+        Section::Output => Some("output"),
+        Section::InOut => Some("in/out"),
+        Section::Static | Section::Temp => None,
+    }
+}
+
+fn of_object(
+    cursor: &InUnit<'_>,
+    target: &Target,
+    named: &Named,
+    program: &InProgram<'_>,
+    index: &ProgramIndex<'_>,
+) -> String {
+    let object = &named.object;
+    let text = cursor.text(target.range);
+    let db = cursor.it.db;
+    let mut out = format!("**{text}**: {}", describe::kind(object));
+    let table = db::symbol_table(db, program.program);
+    let (address, symbol) = match object.text.starts_with('%') {
+        true => (object.text.clone(), table.symbol(&object.text)),
+        false => (table.address(&object.text).unwrap_or_else(|| object.text.clone()), Some(object.text.clone())),
+    };
+    if let Some(symbol) = symbol.filter(|it| !table.is_empty() && **it != *address) {
+        let _ = write!(out, "  \n`{address}`, symbol `{symbol}`");
+        if let Some(comment) = comment(cursor.it, program, &symbol) {
+            let _ = write!(out, ": {comment}");
+        }
+    }
+    if let Some(declared) = cursor::declaration(cursor.model, object) {
+        let word = section(declared.section).unwrap_or(match declared.section {
+            Section::Temp => "temporary",
+            _ => "static",
+        });
+        let _ = write!(out, "  \n{word} of type `{}`", declared.ty);
+    }
+    if object.indexed {
+        out.push_str("  \nthe address is that of index 0; an index is added when the program runs");
+    }
+    let lines = [describe::place(object, index.family), describe::rights(object)];
+    for line in lines.into_iter().flatten() {
+        let _ = write!(out, "  \n{line}");
+    }
+    write_uses(&mut out, named, index);
+    out
+}
+
+/// How often the object itself is used by what, and what shares memory with it.
+fn write_uses(out: &mut String, named: &Named, index: &ProgramIndex<'_>) {
+    #[derive(Default)]
+    struct Counts {
+        reads: usize,
+        writes: usize,
+        edges: usize,
+    }
+    let mut by_task: BTreeMap<String, Counts> = BTreeMap::new();
+    let mut others: Vec<&str> = Vec::new();
+    let is_itself = |it: &Object| {
+        it.footprint == named.object.footprint && (it.ty, it.indexed) == (named.object.ty, named.object.indexed)
+    };
+    for (object, used) in named.uses(index) {
+        if !is_itself(object) {
+            if !others.contains(&object.text.as_str()) {
+                others.push(&object.text);
+            }
+            continue;
+        }
+        let tasks = index.task_names(used.unit);
+        let task = if tasks.is_empty() { "a task that is not known".to_owned() } else { tasks };
+        let counts = by_task.entry(task).or_default();
+        match used.mode {
+            mode if mode.is_edge() => counts.edges += 1,
+            Mode::EdgeMemory => counts.edges += 1,
+            mode => {
+                counts.reads += usize::from(mode.reads());
+                counts.writes += usize::from(cursor::writes(mode));
+            }
+        }
+    }
+    if by_task.is_empty() && named.object.class != Class::CodeBlock {
+        out.push_str("\n\nnot used by the program");
+    }
+    for (task, it) in &by_task {
+        let (reads, writes, edges) = (count(it.reads, "read"), count(it.writes, "write"), count(it.edges, "edge test"));
+        let separator = if out.contains("\n\n- ") { "\n" } else { "\n\n" };
+        let _ = write!(out, "{separator}- {task}: {reads}, {writes}, {edges}");
+    }
+    const MOST: usize = 8;
+    if !others.is_empty() {
+        let shown: Vec<String> = others.iter().take(MOST).map(|it| format!("`{it}`")).collect();
+        let more = if others.len() > MOST { format!(" and {} more", others.len() - MOST) } else { String::new() };
+        let _ = write!(out, "\n\nshares memory with {}{more}", shown.join(", "));
+    }
+}
+
+/// The comment that the declaration of a symbol gives it.
+fn comment(it: InFile<'_>, program: &InProgram<'_>, symbol: &str) -> Option<String> {
+    let key = crate::model::symbols::key(symbol.split(['.', ':']).next().unwrap_or(symbol));
+    let units = db::program_units(it.db, program.program).iter();
+    let mut declaring = units.filter(|&&unit| !db::facts(it.db, unit).symbols.is_empty());
+    declaring.find_map(|&unit| {
+        let symbols = &db::model(it.db, unit).symbols;
+        let symbol = symbols.iter().find(|it| crate::model::symbols::key(&it.name) == key)?;
+        symbol.comment.as_ref().map(ToString::to_string)
+    })
+}

@@ -1,0 +1,96 @@
+//! `textDocument/references`: the places that use what stands at a position, and what shares memory with it.
+
+use lsp_types::{Location, ReferenceParams, ReferencesRequest};
+
+use super::{Answer, Handle};
+use crate::analysis::Site;
+use crate::analysis::program::ProgramIndex;
+use crate::db::FilePlace;
+use crate::model::unit::{Callee, Mode};
+use crate::server::cursor::{self, InProgram, InUnit, Named, Target, What};
+use crate::server::requests::definition;
+use crate::server::snapshot::Snapshot;
+
+pub(super) struct Handler;
+
+impl Handle for Handler {
+    type Request = ReferencesRequest;
+
+    fn handle(snapshot: &Snapshot, params: ReferenceParams) -> Answer<Self::Request> {
+        let position = params.text_document_position_params;
+        let Some(it) = snapshot.file(&position.text_document.uri) else { return Ok(None) };
+        let found = found(InUnit::at(it, it.offset(position.position)), params.context.include_declaration);
+        let locations: Vec<Location> =
+            found.into_iter().filter_map(|found| it.root.location(snapshot, found.place)).collect();
+        Ok((!locations.is_empty()).then_some(locations))
+    }
+}
+
+/// A use, or a declaration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Found {
+    pub(super) place: FilePlace,
+    /// `None` for a declaration.
+    pub(super) mode: Option<Mode>,
+}
+
+/// Uses of what stands at a place, each place once; declarations first.
+pub(super) fn found(cursor: Option<InUnit<'_>>, with_declarations: bool) -> Vec<Found> {
+    let Some((cursor, target)) = cursor.and_then(|it| it.target().map(|target| (it, target))) else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    if let What::Label { name, part } = &target.what {
+        let model = cursor.model;
+        let place = |range| FilePlace { file: cursor.it.file, range: cursor.in_file(range) };
+        if with_declarations {
+            let labels = model.labels.iter().filter(|it| it.name == *name && it.part == *part);
+            found.extend(labels.map(|it| Found { place: place(it.range), mode: None }));
+        }
+        let jumps = model.jumps.iter().filter(|it| it.label == *name && it.part == *part);
+        found.extend(jumps.map(|it| Found { place: place(it.range), mode: Some(Mode::Read) }));
+        return found;
+    }
+    let Some((program, unit)) = cursor.program() else { return found };
+    let program = InProgram::new(cursor.it, program);
+    let index = program.index();
+    if with_declarations {
+        let declared = definition::places(&cursor, &target, &program, &index, unit);
+        found.extend(declared.into_iter().map(|place| Found { place, mode: None }));
+    }
+    let mut places = program.places();
+    for (site, mode) in uses(&cursor, &target, &index, unit) {
+        if let Some(place) = places.of(site)
+            && !found.iter().any(|it| it.place == place)
+        {
+            found.push(Found { place, mode: Some(mode) });
+        }
+    }
+    found
+}
+
+fn uses(cursor: &InUnit<'_>, target: &Target, index: &ProgramIndex<'_>, unit: u32) -> Vec<(Site, Mode)> {
+    if let Some(callee) = callee(cursor, target) {
+        let calls = index.calls.iter().filter(|it| it.it.callee == callee);
+        return calls.map(|it| (it.site(), Mode::Read)).collect();
+    }
+    let Some(named) = cursor::Named::new(cursor, target, unit, index) else { return Vec::new() };
+    named_uses(&named, index)
+}
+
+fn named_uses(named: &Named, index: &ProgramIndex<'_>) -> Vec<(Site, Mode)> {
+    named.uses(index).into_iter().map(|(_, it)| (it.site(), it.mode)).collect()
+}
+
+/// What a call at the place calls; of a symbol that names an instance of a DFB, that instance.
+pub(super) fn callee(cursor: &InUnit<'_>, target: &Target) -> Option<Callee> {
+    match &target.what {
+        What::Call(at) => Some(cursor.model.calls.get(*at as usize)?.callee.clone()),
+        What::Symbol(at) => {
+            let symbol = cursor.model.symbols.get(*at as usize)?;
+            let is_instance = symbol.object.is_none();
+            is_instance.then(|| Callee::Instance(crate::model::symbols::key(&symbol.name)))
+        }
+        _ => None,
+    }
+}
