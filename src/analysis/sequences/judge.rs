@@ -297,7 +297,12 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
         let (mut values, mut assumed) = (Vec::new(), false);
         if let Answer::Possible(witness) = answer {
             let is_known = |it: &&Given| !matches!(it, Given::Unknown(..));
-            values.extend(witness.given.iter().filter(is_known).map(|it| self.trace.space().describe(it)));
+            // Two versions of one object may have one value.
+            for it in witness.given.iter().filter(is_known).map(|it| self.trace.space().describe(it)) {
+                if !values.contains(&it) {
+                    values.push(it);
+                }
+            }
             assumed = witness.assumed;
         }
         Deviation { kind, step, first, second, situation, values, assumed }
