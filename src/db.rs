@@ -825,6 +825,18 @@ impl RootDatabase {
         }
     }
 
+    /// Says what was left out. Code that is not read may do what that beside it does not.
+    pub fn set_unread(&mut self, unread: &[Unread]) {
+        let is_code =
+            |it: &&Unread| matches!(&it.reason, UnreadReason::Unsupported(what) if detect::unsupported::is_code(what));
+        let mut folders: Vec<String> = unread.iter().filter(is_code).map(|it| folder_of(&it.path).to_owned()).collect();
+        folders.sort_unstable();
+        folders.dedup();
+        if folders != *self.project().partly_read(self) {
+            self.project().set_partly_read(self).to(folders);
+        }
+    }
+
     /// Says what a file is.
     pub fn set_detected(&mut self, file: SourceFile, detected: Detected) {
         if file.detected(self) != detected {
@@ -910,16 +922,13 @@ pub struct Opened {
 }
 
 /// Reads the units of files on the current rayon pool.
-pub fn open(mut inputs: Vec<Input>, settings: Settings) -> Opened {
+///
+/// `unread`: what lies beside them and was left out already.
+pub fn open(mut inputs: Vec<Input>, mut unread: Vec<Unread>, settings: Settings) -> Opened {
     inputs.sort_by(|a, b| a.path.cmp(&b.path));
     inputs.dedup_by(|a, b| a.path == b.path);
     let (linted, left): (Vec<Input>, Vec<Input>) = inputs.into_iter().partition(|it| family(it.detected).is_some());
-    let mut unread = Vec::new();
-    let mut partly_read: Vec<String> = Vec::new();
     for it in left {
-        if matches!(it.detected, Detected::Unsupported { what, .. } if detect::unsupported::is_code(what)) {
-            partly_read.push(folder_of(&it.path).to_owned());
-        }
         let reason = match it.detected {
             Detected::Unsupported { what, .. } => UnreadReason::Unsupported(what.to_owned()),
             _ => UnreadReason::NotPlc,
@@ -928,8 +937,7 @@ pub fn open(mut inputs: Vec<Input>, settings: Settings) -> Opened {
     }
     let encodings = linted.iter().map(|it| it.source.encoding.as_str()).collect();
     let mut db = RootDatabase::new(settings, None);
-    partly_read.dedup();
-    db.project().set_partly_read(&mut db).to(partly_read);
+    db.set_unread(&unread);
     let files = db.set_files(linted);
     files.par_iter().for_each_with(db.clone(), |db, &file| {
         for &unit in units(db, file) {
@@ -941,9 +949,14 @@ pub fn open(mut inputs: Vec<Input>, settings: Settings) -> Opened {
 
 /// Checks files on the current rayon pool. The outcome is the same for any number of threads.
 pub fn check(inputs: Vec<Input>, settings: Settings) -> Outcome {
+    check_beside(inputs, Vec::new(), settings)
+}
+
+/// The same of files beside others that were left out: `unread`.
+pub fn check_beside(inputs: Vec<Input>, unread: Vec<Unread>, settings: Settings) -> Outcome {
     let start = Instant::now();
     let active = settings.active();
-    let Opened { db, files, encodings, unread } = open(inputs, settings);
+    let Opened { db, files, encodings, unread } = open(inputs, unread, settings);
     let mut outcome = Outcome { active, unread, ..Outcome::default() };
     let mut found: Vec<Vec<FileFinding>> =
         files.par_iter().map_with(db.clone(), |db, &file| file_findings(db, file).to_vec()).collect();

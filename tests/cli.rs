@@ -401,3 +401,16 @@ fn findings_stand_in_the_configuration() {
             .expect("JSON");
     assert_eq!(clean["files"].as_array().map(Vec::len), Some(1));
 }
+
+/// What a file that is not read does is not known, so that no absence is reported beside it.
+#[test]
+fn unread_code_makes_a_program_incomplete() {
+    let main =
+        "ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\n      U     M 50.0\n      =     A 4.0\nEND_ORGANIZATION_BLOCK\n";
+    let scl = "FUNCTION FC 7 : VOID\nBEGIN\nIF \"x\" THEN\n M50.0 := TRUE;\nEND_IF;\nFOR i := 1 TO 3 DO\n y := i;\nEND_FOR;\nEND_FUNCTION\n";
+    let files = |second: &str| folder(&[("p/a.awl", main), (second, scl)]);
+    let found =
+        |second: &str| run(files(second).path(), &["check", "--select", "O007", "--format", "concise", "."]).out;
+    assert!(!found("p/b.scl").contains("O007["), "{}", found("p/b.scl"));
+    assert!(found("q/b.scl").contains("O007["), "{}", found("q/b.scl"));
+}

@@ -107,9 +107,7 @@ fn lint(groups: Vec<Group>, dialect: Dialect, threads: Option<NonZeroUsize>) -> 
     let pool = pool.map_err(|it| Failure::Usage(format!("the threads do not start: {it}")))?;
     let check = |group: Group| {
         let files = group.read(dialect);
-        let mut outcome = db::check(files.inputs, group.settings);
-        outcome.unread.extend(files.unread);
-        outcome
+        db::check_beside(files.inputs, files.unread, group.settings)
     };
     let outcomes = pool.install(|| groups.into_iter().map(check).collect());
     let mut outcome = merge(outcomes);

@@ -109,8 +109,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut is_read = false;
     for group in read::groups(path, arguments.reading.stdin_filename.as_deref(), &mut loader)? {
         let files = group.read(arguments.reading.dialect);
-        unread.extend(files.unread);
-        let opened = db::open(files.inputs, group.settings);
+        let opened = db::open(files.inputs, files.unread, group.settings);
         is_read |= !opened.files.is_empty();
         drawings.extend(opened.drawings(!arguments.no_findings));
         unread.extend(opened.unread);

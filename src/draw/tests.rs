@@ -18,7 +18,7 @@ fn drawings_of(files: &[(&str, &str)]) -> Vec<Drawing> {
     let folders = Folders { root: "/".into(), current: "/".into() };
     let settings = Settings::without_file(folders, Overrides::default()).expect("settings");
     let inputs = files.iter().map(|(path, text)| Input::from_text(path, text, Dialect::Auto)).collect();
-    db::open(inputs, settings).drawings(true).into_iter().map(|it| it.drawing).collect()
+    db::open(inputs, Vec::new(), settings).drawings(true).into_iter().map(|it| it.drawing).collect()
 }
 
 fn only(files: &[(&str, &str)], kind: Kind) -> Drawing {
@@ -308,11 +308,12 @@ fn findings_are_marked_where_they_are() {
         Overrides { ignore: vec!["all".to_owned()], ..Overrides::default() },
     );
     let input = Input::from_text("a.txt", PAGE, Dialect::Auto);
-    let opened = db::open(vec![input.clone()], without.expect("settings"));
+    let opened = db::open(vec![input.clone()], Vec::new(), without.expect("settings"));
     let quiet = opened.drawings(true).remove(0).drawing.svg(Theme::Light);
     assert!(!quiet.contains("G008"));
     let opened = db::open(
         vec![input],
+        Vec::new(),
         Settings::without_file(Folders { root: "/".into(), current: "/".into() }, Overrides::default())
             .expect("settings"),
     );

@@ -166,6 +166,7 @@ impl Root {
             (file.found, file.listed) = (false, false);
         }
         self.relist = true;
+        self.db.set_unread(&loaded.files.unread);
         for Unread { path, .. } in loaded.files.unread {
             self.files.entry(path).or_default().found = true;
         }
