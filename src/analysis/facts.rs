@@ -15,7 +15,7 @@ use super::sequences::code::CodeFacts;
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
-use crate::model::entity::{BlockName, Entity};
+use crate::model::entity::{BlockKind, BlockName, Entity, Part};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::layout::DataType;
 use crate::model::object::{Class, Object, Type};
@@ -161,6 +161,17 @@ pub struct UnitFacts {
     pub code: Option<Box<CodeFacts>>,
 }
 
+/// In what facts of a unit are others than before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Difference {
+    None,
+    /// In what its code does to which objects, and where things stand.
+    Uses,
+    /// Besides, in what it is called, declares for its callers, or calls.
+    Calls,
+    Unknown,
+}
+
 /// More calls than this in a unit are not compared with one another.
 const MAX_COMPARED: usize = 48;
 
@@ -302,8 +313,8 @@ impl UnitFacts {
         }
     }
 
-    /// Whether all is as in other facts of the unit but what its code does to which objects, and where things stand.
-    pub fn has_outline_of(&self, other: &Self) -> bool {
+    /// In what these facts are others than those which the unit had before.
+    pub fn difference(&self, old: &Self) -> Difference {
         let is_same_call = |(a, b): (&FactCall, &FactCall)| {
             let key = |it: &FactCall| (it.conditional, it.reachable, it.full, it.instance_anchor.is_some());
             (&a.callee, &a.instance, key(a)) == (&b.callee, &b.instance, key(b))
@@ -311,24 +322,28 @@ impl UnitFacts {
         let is_same_symbol =
             |(a, b): (&FactSymbol, &FactSymbol)| (&a.name, &a.object, &a.ty) == (&b.name, &b.object, &b.ty);
         let condition = |it: &Self| Some(it.objects.get(it.condition? as usize)?.object.clone());
-        let flags = |it: &Self| (it.opens_instance, it.reads_indirectly, it.writes_indirectly, it.has_gaps);
-        (&self.entity, self.language) == (&other.entity, other.language)
-            && self.calls.len() == other.calls.len()
-            && self.calls.iter().zip(&other.calls).all(is_same_call)
-            && self.exclusive_calls == other.exclusive_calls
-            && self.instance_of == other.instance_of
-            && self.declared == other.declared
-            && self.symbols.len() == other.symbols.len()
-            && self.symbols.iter().zip(&other.symbols).all(is_same_symbol)
-            && flags(self) == flags(other)
-            && self.chart == other.chart
-            && self.interface == other.interface
-            && condition(self) == condition(other)
-    }
-
-    /// Whether the places of its calls are those of other facts of the unit.
-    pub fn calls_from_where(&self, other: &Self) -> bool {
-        self.calls.iter().map(|it| it.anchor).eq(other.calls.iter().map(|it| it.anchor))
+        // Data is laid out by what other blocks declare, and code is placed by what it is.
+        let is_code = |it: &Self| match &it.entity {
+            Entity::Block { kind, .. } => matches!(kind, BlockKind::Fc | BlockKind::Ob),
+            Entity::Pl7 { part, .. } => matches!(part, Part::Subroutine(_)),
+            _ => false,
+        };
+        let is_same = self.language == old.language
+            && self.instance_of == old.instance_of
+            && self.opens_instance == old.opens_instance
+            && self.symbols.len() == old.symbols.len()
+            && self.symbols.iter().zip(&old.symbols).all(is_same_symbol)
+            && self.chart == old.chart
+            && self.interface == old.interface
+            && condition(self) == condition(old);
+        let is_named_same = self.entity == old.entity && self.declared == old.declared;
+        if !is_same || !is_named_same && !(is_code(self) && is_code(old)) {
+            return Difference::Unknown;
+        }
+        let calls_same = self.calls.len() == old.calls.len()
+            && self.calls.iter().zip(&old.calls).all(is_same_call)
+            && self.exclusive_calls == old.exclusive_calls;
+        if is_named_same && calls_same { Difference::Uses } else { Difference::Calls }
     }
 
     /// Says under which condition the section runs. The bit is read before the unit runs.

@@ -4,10 +4,10 @@
 //! or are passed by for one cause.
 //!
 //! **Invariant:** a rule that looks at objects one by one says of an island what follows from its uses, from the units that
-//! hold them and the calls which lead there, from the outline of the other units ([`UnitFacts::has_outline_of`]) and from
-//! the program's [`Summary`]; it says it at one of those uses. What it says of objects that a unit has for itself, it says of
-//! [`ProgramIndex::judged_units`], at a place that no other object is used at. So an edit that leaves outlines and summary as they are
-//! moves only the islands of the units that it changes.
+//! hold them and the calls which lead there, from the order in which these run and in which contexts, and from the program's
+//! [`Summary`]; it says it at one of those uses. What it says of objects that a unit has for itself, it says of
+//! [`ProgramIndex::judged_units`], at a place that no other object is used at. So an edit that leaves the summary as it is moves only the
+//! islands of the units that it touches ([`Outline::moved`](super::outline::Outline::moved)).
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -58,6 +58,31 @@ impl Held {
         let end = self.ends.get(at).copied().unwrap_or_default();
         let uses = self.uses.get(start as usize..end as usize).unwrap_or_default();
         uses.iter().filter_map(|it| self.facts.uses.get(*it as usize))
+    }
+
+    /// Finds what is told together, and how memory is used, which hang on where calls lead.
+    fn tie(&mut self, skeleton: &Skeleton<'_>, unit: u32) {
+        let (facts, ids) = (&self.facts, &self.ids);
+        let id = |it: &Use| ids.get(it.object as usize).copied().unwrap_or(NONE);
+        // What one condition, jump or call passes by has one cause, and is told in one finding.
+        let missed = facts.objects.iter().zip(ids).filter_map(|(it, &id)| Some(((1, it.missed?), id)));
+        let is_passed_by = skeleton.is_passed_by(unit);
+        let is_edge = |it: &&Use| it.mode.is_edge() || it.mode == Mode::EdgeMemory;
+        let is_skipped = |it: &&Use| it.skipped_by.is_some() || is_passed_by;
+        let skipped = facts.uses.iter().filter(is_edge).filter(is_skipped);
+        let mut causes: Vec<((u8, u32), u32)> = facts.uses.iter().map(|it| ((0, it.anchor), id(it))).collect();
+        causes.extend(missed);
+        causes.extend(skipped.map(|it| ((2, it.skipped_by.unwrap_or(NONE)), id(it))));
+        causes.retain(|it| it.1 != NONE);
+        causes.sort_unstable();
+        causes.dedup();
+        self.together = causes.windows(2).filter(|it| it[0].0 == it[1].0).map(|it| (it[0].1, it[1].1)).collect();
+        self.addressed = Modes::default();
+        for it in &facts.uses {
+            if facts.objects.get(it.object as usize).is_some_and(|it| Summary::is_addressed(&it.object)) {
+                self.addressed.insert(actual_mode(skeleton, unit, it));
+            }
+        }
     }
 
     /// The objects of the program that are used, each once for each object of the unit that it is.
@@ -115,28 +140,35 @@ impl Islands {
         islands
     }
 
-    /// Takes new facts of some units. Returns the objects that they use or used.
-    pub fn update(&mut self, skeleton: &Skeleton<'_>, changed: &[(u32, Arc<UnitFacts>)]) -> FxHashSet<u32> {
-        let mut moved = FxHashSet::default();
-        for (unit, facts) in changed {
-            let held = self.hold(skeleton, *unit, facts);
-            let Some(old) = self.units.get_mut(*unit as usize).map(|it| std::mem::replace(it, held)) else { continue };
+    /// Takes new facts of the units that have changed, and looks at what moved with them. Returns the objects that all these
+    /// use or used.
+    pub fn update(
+        &mut self,
+        skeleton: &Skeleton<'_>,
+        facts: &[Arc<UnitFacts>],
+        changed: &[u32],
+        moved: &[u32],
+    ) -> FxHashSet<u32> {
+        let mut objects = FxHashSet::default();
+        for &unit in changed {
+            let Some(facts) = facts.get(unit as usize) else { continue };
+            let held = self.hold(skeleton, unit, facts);
+            let Some(old) = self.units.get_mut(unit as usize).map(|it| std::mem::replace(it, held)) else { continue };
             for (_, id) in old.used() {
-                moved.insert(id);
-                self.objects[id as usize].units.retain(|it| it.0 != *unit);
+                objects.insert(id);
+                self.objects[id as usize].units.retain(|it| it.0 != unit);
             }
-            self.enter(*unit);
-            moved.extend(self.used_in(*unit));
+            self.enter(unit);
         }
-        for &id in &moved {
+        for &unit in moved {
+            let Some(held) = self.units.get_mut(unit as usize) else { continue };
+            held.tie(skeleton, unit);
+            objects.extend(held.used().map(|it| it.1));
+        }
+        for &id in &objects {
             self.set_modes(skeleton, id);
         }
-        moved
-    }
-
-    /// The objects that a unit uses.
-    pub fn used_in(&self, unit: u32) -> impl Iterator<Item = u32> {
-        self.units.get(unit as usize).into_iter().flat_map(|it| it.used().map(|it| it.1))
+        objects
     }
 
     fn hold(&mut self, skeleton: &Skeleton<'_>, unit: u32, facts: &Arc<UnitFacts>) -> Held {
@@ -159,33 +191,10 @@ impl Islands {
                 *end += 1;
             }
         }
-        let id = |it: &Use| ids.get(it.object as usize).copied().unwrap_or(NONE);
-        let mut places: Vec<(u32, u32)> = facts.uses.iter().map(|it| (it.anchor, id(it))).collect();
-        places.retain(|it| it.1 != NONE);
-        places.sort_unstable();
-        places.dedup();
-        let mut together: Vec<(u32, u32)> =
-            places.windows(2).filter(|it| it[0].0 == it[1].0).map(|it| (it[0].1, it[1].1)).collect();
-        // What one condition, jump or call passes by has one cause, and is told in one finding.
-        let missed =
-            (0..).zip(&facts.objects).filter_map(|(at, it)| Some(((it.missed?, false), *ids.get::<usize>(at)?)));
-        let is_passed_by = skeleton.is_passed_by(unit);
-        let is_edge = |it: &&Use| it.mode.is_edge() || it.mode == Mode::EdgeMemory;
-        let is_skipped = |it: &&Use| it.skipped_by.is_some() || is_passed_by;
-        let skipped = facts.uses.iter().filter(is_edge).filter(is_skipped);
-        let mut causes: Vec<((u32, bool), u32)> =
-            missed.chain(skipped.map(|it| ((it.skipped_by.unwrap_or(NONE), true), id(it)))).collect();
-        causes.retain(|it| it.1 != NONE);
-        causes.sort_unstable();
-        causes.dedup();
-        together.extend(causes.windows(2).filter(|it| it[0].0 == it[1].0).map(|it| (it[0].1, it[1].1)));
-        let mut addressed = Modes::default();
-        for it in &facts.uses {
-            if facts.objects.get(it.object as usize).is_some_and(|it| Summary::is_addressed(&it.object)) {
-                addressed.insert(actual_mode(skeleton, unit, it));
-            }
-        }
-        Held { facts: facts.clone(), ids, ends, uses, together, addressed }
+        let mut held =
+            Held { facts: facts.clone(), ids, ends, uses, together: Vec::new(), addressed: Modes::default() };
+        held.tie(skeleton, unit);
+        held
     }
 
     fn id(&mut self, fact: &FactObject) -> u32 {

@@ -23,6 +23,7 @@ pub mod islands;
 pub mod known;
 pub mod modules;
 pub mod operands;
+pub mod outline;
 pub mod parameters;
 pub mod priority;
 pub mod processing;
