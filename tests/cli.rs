@@ -324,7 +324,7 @@ fn what_cannot_be_drawn_is_wrong_usage() {
     let usage = |arguments: &[&str], what: &str| assert_usage(&run(folder.path(), arguments), what);
     usage(&["draw"], "required arguments were not provided");
     usage(&["draw", "nowhere"], "nowhere: there is no such file or folder");
-    usage(&["draw", "b"], "b: nothing to draw: there is no chart, no rung and no call in it");
+    usage(&["draw", "b"], "b: nothing to draw: there is no chart, no sequence, no rung and no call in it");
     usage(&["draw", "c"], "c: nothing to draw: no PLC program is recognised in it");
     usage(&["draw", "a.txt", "--only", "calls"], "a.txt: nothing to draw: there is no call in it");
     usage(&["draw", "a.txt", "--unit", "SR7"], "no drawing has `SR7` in its title; there are: `MAST - Cycle - CHART`");

@@ -190,6 +190,17 @@ fn an_application_file_has_the_findings_of_its_sections() {
     }
 }
 
+/// Correct charts, and one with each defect.
+#[test]
+fn every_rule_about_charts_finds_something() {
+    let outcomes = folders().into_iter().filter(|it| it.0.starts_with("charts/")).map(|it| check(&it.1, Some("all")));
+    let found: std::collections::BTreeSet<&str> =
+        outcomes.flat_map(|it| it.diagnostics.into_iter().map(|it| it.finding.rule.code)).collect();
+    let all = plclint::lint::rules().iter().filter(|it| it.code.starts_with('G'));
+    let silent: Vec<&str> = all.map(|it| it.code).filter(|it| !found.contains(it)).collect();
+    assert_eq!(silent, [""; 0]);
+}
+
 /// The corpus would prove nothing if a rule could fall silent on all of it.
 #[test]
 fn a_fault_of_a_document_is_found() {

@@ -1,7 +1,11 @@
 //! Plausible programs of any size: blocks of varied networks and sections of varied sentences, clean but for one
 //! mistake in some hundred networks. The same size and seed always give the same text.
 
+mod graphic;
+
 use std::fmt::Write as _;
+
+pub use graphic::{grafcet, ladder, pl7_2};
 
 /// A small generator of pseudo-random numbers (xorshift): reproducible, and fast enough not to be measured.
 pub struct Random(u64);

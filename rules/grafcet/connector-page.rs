@@ -22,6 +22,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                     related.extend(transition(other, "of another branch"));
                     format!("a branch of the divergence behind step {name} starts on another page than the others")
                 }
+                Flaw::Before => {
+                    format!("a transition has an origin connector before it, in place of step {name}")
+                }
                 Flaw::Convergence => {
                     format!("step {name} takes part in this AND convergence from another page")
                 }

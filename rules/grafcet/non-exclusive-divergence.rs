@@ -48,6 +48,10 @@ fn divergence(
         .collect();
     let Some((first, witness)) = found.first() else { return };
     let Some(&step) = net.crossings[*first].from.iter().find(|it| from.contains(it)) else { return };
+    // Branches behind two steps of one number: that is the mistake, and the affair of the rules about numbers.
+    if net.is_drawn_twice(step) {
+        return;
+    }
     let space = net.space();
     let values: Vec<String> = witness.given.iter().map(|it| space.describe(it)).collect();
     let when = if values.is_empty() { "always".to_owned() } else { format!("when {}", values.join(", ")) };

@@ -1,10 +1,10 @@
 //! G004: an element where the page of a chart does not allow it.
 
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::lint::{Sink, UnitCx};
-use crate::model::chart::{Cell, Chart, ConnectorKind, place};
+use crate::model::chart::{Cell, Chart, ConnectorKind, Node, place};
 use crate::target::Limit;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
@@ -18,6 +18,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         sink.report(cx.model.heading(), format!("the chart has {count} pages, and {} are allowed", pages.value))
             .note(format!("the number is given in {}", pages.source));
     }
+    // In place of a step, before a transition, a connector is on a wrong page rather than on a wrong line.
+    let before: FxHashSet<TextRange> = if cx.model.language.is_pl7_2() { FxHashSet::default() } else { sources(chart) };
     let mut taken: FxHashMap<Cell, TextRange> = FxHashMap::default();
     for (element, cell, range) in elements(chart) {
         if let Some(before) = taken.get(&cell) {
@@ -36,7 +38,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         } else if cell.line >= lines.value {
             sink.report(range, beyond(cell.line, lines, "line"))
                 .note(format!("the size of a page is given in {}", lines.source));
-        } else if !element.fits(cell.line, lines.value.saturating_sub(1)) {
+        } else if !before.contains(&range) && !element.fits(cell.line, lines.value.saturating_sub(1)) {
             sink.report(range, format!("{} stands on line {}, {}", element.name(), cell.line, element.lines()))
                 .note("lines are counted from 0, as the exchange form does");
         }
@@ -80,6 +82,16 @@ impl Element {
             Self::Connector(ConnectorKind::Destination) => "and destination connectors stand on odd lines",
         }
     }
+}
+
+/// Origin connectors that transitions come behind.
+fn sources(chart: &Chart) -> FxHashSet<TextRange> {
+    let nodes = chart.transitions.iter().flat_map(|it| &it.sources);
+    let connectors = nodes.filter_map(|it| match it {
+        Node::Connector(at) => chart.connectors.get(*at as usize),
+        Node::Step(_) | Node::Named(_) => None,
+    });
+    connectors.map(|it| it.range).collect()
 }
 
 /// The elements with a place, in the order of the text.

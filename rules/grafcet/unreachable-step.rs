@@ -4,38 +4,40 @@ use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
 use crate::analysis::reach::{Node, Part, Study};
+use crate::analysis::stuck::{Stuck, never_active};
 use crate::lint::{ProgramCx, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for it in cx.studies() {
-        study(it, sink);
+        // Behind a receptivity that is never true: the affair of the rules about receptivities.
+        study(it, |part| Stuck::of(it, part).behind, sink);
     }
 }
 
-pub(super) fn study(study: &Study<'_, '_>, sink: &mut Sink<'_, Site>) {
-    if study.net.has_gaps || !study.net.knows_presets() {
+/// `explained`: steps of which another rule says why they are never active.
+pub(super) fn study(study: &Study<'_, '_>, explained: impl Fn(&Part) -> FxHashSet<Node>, sink: &mut Sink<'_, Site>) {
+    if !study.knows_all() {
         return;
     }
     for part in &study.parts {
         // Without a start, all of it is another rule's affair.
         if !part.all.is_partial && !part.all.situations.is_empty() {
-            judge(study, part, sink);
+            judge(study, part, &explained(part), sink);
         }
     }
 }
 
-fn judge(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<'_, Site>) {
+fn judge(study: &Study<'_, '_>, part: &Part, explained: &FxHashSet<Node>, sink: &mut Sink<'_, Site>) {
     let net = &study.net;
-    let reached: FxHashSet<Node> = part.all.situations.iter().flat_map(|it| net.active(&part.component, it)).collect();
-    let never: Vec<Node> = part.component.nodes.iter().copied().filter(|it| !reached.contains(it)).collect();
+    let all = never_active(net, part);
+    let left: Vec<Node> = all.iter().copied().filter(|it| !explained.contains(it)).collect();
+    let all: FxHashSet<Node> = all.into_iter().collect();
     // What comes behind a step that is never active has the same cause.
-    let is_first = |&node: &Node| {
-        net.entering(node).iter().any(|&it| net.crossings[it].from.iter().any(|it| reached.contains(it)))
-    };
-    let first: Vec<Node> = never.iter().copied().filter(is_first).collect();
-    let Some(&primary) = first.first().or(never.first()) else { return };
+    let is_first =
+        |&node: &Node| net.entering(node).iter().any(|&it| net.crossings[it].from.iter().any(|it| !all.contains(it)));
+    let Some(&primary) = left.iter().find(|it| is_first(it)).or(left.first()) else { return };
     let message = format!("step `{}` is never active", net.name(primary));
-    let others = never.iter().filter(|it| **it != primary);
+    let others = left.iter().filter(|it| **it != primary);
     let mut finding = sink
         .report(net.step(primary).site(), message)
         .related_all(others.map(|&it| (net.step(it).site(), format!("nor is step `{}`", net.name(it)))));

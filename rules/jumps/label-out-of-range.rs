@@ -1,10 +1,19 @@
-//! J003: a label that the language does not have.
+//! J003: a label that the language does not have, or more jumps to labels than it has.
 
 use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    if let Some(limit) = cx.target.jumps()
+        && let (Some(beyond), Some(first)) = (cx.model.jumps.get(limit.value as usize), cx.model.jumps.first())
+    {
+        let count = cx.model.jumps.len();
+        sink.report(cx.model.place(beyond.anchor), format!("there are {count} jumps, and {} are allowed", limit.value))
+            .label("the first one beyond")
+            .related(cx.model.place(first.anchor), "the first one of all")
+            .note(format!("the number is given in {}", limit.source));
+    }
     for label in &cx.model.labels {
         let text = &label.text;
         if let Some(range) = cx.target.label_numbers() {

@@ -1,5 +1,7 @@
 //! Q012: what the rules about charts say of a sequence that is coded with bits.
 
+use rustc_hash::FxHashSet;
+
 use super::{deadlock, divergence_mismatch, non_exclusive_divergence, unreachable_step, unsafe_activation};
 use crate::analysis::Site;
 use crate::lint::{ProgramCx, Sink};
@@ -11,7 +13,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             let together = |a: usize, b: usize| sequence.together.contains(&(a, b));
             non_exclusive_divergence::study(study, together, sink);
             divergence_mismatch::study(study, sink);
-            unreachable_step::study(study, sink);
+            unreachable_step::study(study, |_| FxHashSet::default(), sink);
             deadlock::study(study, sink);
             unsafe_activation::study(study, sink);
         });

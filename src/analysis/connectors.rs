@@ -14,6 +14,8 @@ const MOST: usize = 64;
 pub enum Flaw {
     /// A branch of an OR divergence leaves its step by a connector, on another page than another branch.
     Branch { other: usize },
+    /// A transition has an origin connector before it, in place of its step.
+    Before,
     /// A step takes part in an AND convergence by a connector, from another page.
     Convergence,
     /// The step before an AND divergence that has destination connectors stands on another page.
@@ -134,27 +136,26 @@ fn leaving(chart: &Chart<'_>) -> FxHashMap<u32, Vec<usize>> {
     leaving
 }
 
-/// Transitions behind an origin connector that stands for a step of another page.
+/// Transitions behind an origin connector that stands for a step.
 fn sources_by_connector(chart: &Chart<'_>, pages: &Pages<'_, '_>) -> Vec<Misplaced> {
     let leaving = leaving(chart);
     let mut found = Vec::new();
     for transition in &chart.transitions {
         for connector in chart.connectors_at(transition, &transition.it.sources) {
             let Some(&step) = chart.connectors[connector].from.first() else { continue };
-            if !pages.differ(transition.unit, chart.steps[step as usize].unit) {
-                continue;
-            }
             let elsewhere = |at: &usize| pages.differ(chart.transitions[*at].unit, transition.unit);
             let behind = leaving.get(&step).map_or(&[][..], Vec::as_slice);
             let ends_here = |it: &Transition<'_>| !chart.connectors_at(it, &it.it.targets).is_empty();
-            let flaw = if transition.it.sources.len() > 1 {
+            let flaw = if !pages.differ(transition.unit, chart.steps[step as usize].unit) {
+                Flaw::Before
+            } else if transition.it.sources.len() > 1 {
                 Flaw::Convergence
             } else if transition.it.targets.len() > 1 && ends_here(transition) {
                 Flaw::Divergence
             } else if let Some(&other) = behind.iter().take(MOST).find(|it| elsewhere(it)) {
                 Flaw::Branch { other }
             } else {
-                continue;
+                Flaw::Before
             };
             found.push(Misplaced { flaw, connector, step });
         }

@@ -31,6 +31,7 @@ pub mod program;
 pub mod reach;
 pub mod sequences;
 pub mod size;
+pub mod stuck;
 pub mod symbols;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.

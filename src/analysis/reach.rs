@@ -138,6 +138,11 @@ impl<'p, 'a> Study<'p, 'a> {
         let parts = components.into_iter().map(part).collect();
         Self { net, parts }
     }
+
+    /// Whether a step that no situation holds is surely never active.
+    pub fn knows_all(&self) -> bool {
+        !self.net.has_gaps && self.net.knows_presets()
+    }
 }
 
 impl Part {
@@ -580,6 +585,23 @@ impl<'p, 'a> Net<'p, 'a> {
     /// Whether receptivities can have the values wanted of them in some situation in which all their transitions are valid,
     /// with the values of objects that do it. Never where no situation is such, or one of them is not known.
     pub fn can_be(&self, component: &Component, reached: &Reached, wanted: &[(usize, bool)]) -> Answer {
+        self.can_be_but(component, reached, wanted, |_| false)
+    }
+
+    /// Steps of its part whose bits the receptivity of a transition asks for.
+    pub fn asked_of(&self, component: &Component, crossing: usize) -> impl Iterator<Item = Node> {
+        let asked = self.crossings[crossing].route.asked.iter();
+        asked.filter_map(|it| component.nodes.get(it.0).copied())
+    }
+
+    /// The same, had some steps any state whatever the situation.
+    pub fn can_be_but(
+        &self,
+        component: &Component,
+        reached: &Reached,
+        wanted: &[(usize, bool)],
+        is_free: impl Fn(Node) -> bool,
+    ) -> Answer {
         let guards: Option<Vec<(ExprId, bool)>> = wanted
             .iter()
             .map(|&(it, value)| match self.crossings[it].guard {
@@ -590,7 +612,8 @@ impl<'p, 'a> Net<'p, 'a> {
         let Some(guards) = guards else { return Answer::Never };
         let crossings: Vec<usize> = wanted.iter().map(|it| it.0).collect();
         let walker = Walker { net: self, component, apart: false };
-        let asked = walker.asked(&crossings);
+        let mut asked = walker.asked(&crossings);
+        asked.retain(|it| component.nodes.get(it.0).is_none_or(|it| !is_free(*it)));
         let mut seen: FxHashSet<Vec<bool>> = FxHashSet::default();
         let mut answer = Answer::Never;
         let valid_in = crossings.first().and_then(|it| reached.valid_in.get(it)).into_iter().flatten();
@@ -626,6 +649,23 @@ impl<'p, 'a> Net<'p, 'a> {
     /// Whether a transition is valid in some situation.
     pub fn is_ever_valid(&self, reached: &Reached, crossing: usize) -> bool {
         reached.valid_in.contains_key(&crossing)
+    }
+
+    /// Whether some situation holds all of some steps.
+    pub fn has_all_active(&self, part: &Part, steps: &[Node]) -> bool {
+        let places: Option<Vec<usize>> = steps.iter().map(|it| part.component.nodes.binary_search(it).ok()).collect();
+        places.is_some_and(|places| part.all.situations.iter().any(|it| places.iter().all(|place| has(it, *place))))
+    }
+
+    /// Whether a step is drawn more than once, so that what leaves it leaves several.
+    pub fn is_drawn_twice(&self, node: Node) -> bool {
+        let Some((chart, name)) = self.nodes.get(node as usize).and_then(|&(chart, step)| {
+            let chart = self.charts.get(chart)?;
+            Some((chart, chart.steps.get(step as usize)?.it.name.as_ref()?))
+        }) else {
+            return false;
+        };
+        chart.steps.iter().filter(|it| it.it.name.as_ref() == Some(name)).count() > 1
     }
 
     /// Whether a receptivity says something of an object.

@@ -70,7 +70,7 @@ impl Format {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Only {
-    /// Grafcet charts, each with its pages
+    /// Grafcet charts, each with its pages, and sequences coded with bits
     Charts,
     /// Rungs, those in charts included; SVG
     Ladder,
@@ -126,7 +126,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             _ => None,
         });
         let why = why.unwrap_or_else(|| match is_read {
-            true => "there is no chart, no rung and no call in it".to_owned(),
+            true => "there is no chart, no sequence, no rung and no call in it".to_owned(),
             false => "no PLC program is recognised in it".to_owned(),
         });
         return Err(Failure::Usage(format!("{shown}: nothing to draw: {why}")));
@@ -146,7 +146,7 @@ fn choose(mut drawings: Vec<ProgramDrawing>, arguments: &Arguments) -> Result<Ve
                 .only
                 .iter()
                 .map(|it| match it {
-                    Only::Charts => "chart",
+                    Only::Charts => "chart or sequence",
                     Only::Ladder => "rung",
                     Only::Calls => "call",
                 })

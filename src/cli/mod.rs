@@ -39,7 +39,7 @@ struct Arguments {
 enum Command {
     /// Check programs and report what is wrong with them
     Check(Box<check::Arguments>),
-    /// Draw Grafcet charts, ladder networks and the graph of calls
+    /// Draw Grafcet charts, sequences coded with bits, ladder networks and the graph of calls
     Draw(Box<draw::Arguments>),
     /// Show the page of a rule
     Rule(rule::Arguments),

@@ -4,8 +4,11 @@
 //! elements all have cells of their own is drawn as it stands; anything else is laid out.
 
 mod paint;
+mod sequence;
 
 use std::ops::Range;
+
+pub(super) use sequence::sequences;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;

@@ -123,10 +123,10 @@ impl Drawing {
     }
 }
 
-/// All drawings of a program: charts, rungs, calls. `units` are those of the index, in its order; `name` is what the
+/// All drawings of a program: charts, those recovered from code behind those that are drawn, rungs, calls. `units` are those of the index, in its order; `name` is what the
 /// program as a whole is called.
 pub fn drawings(name: &str, units: &[Unit<'_>], index: &ProgramIndex<'_>) -> Vec<Drawing> {
-    let charts = chart::pictures(units).into_iter().map(Content::Chart);
+    let charts = chart::pictures(units).into_iter().chain(chart::sequences(units, index)).map(Content::Chart);
     let rungs = units.iter().filter_map(|it| ladder::picture(it, index)).map(Content::Ladder);
     let calls = calls::graph(name, units, index).map(Content::Calls);
     charts.chain(rungs).chain(calls).map(|content| Drawing { content }).collect()

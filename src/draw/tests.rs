@@ -401,6 +401,62 @@ fn branches_stand_side_by_side_under_what_they_leave() {
     assert_eq!(layers.back, [false; 8]);
 }
 
+const SEQUENCE: &str = "\
+ORGANIZATION_BLOCK OB 100
+BEGIN
+      S     M 0.0
+END_ORGANIZATION_BLOCK
+ORGANIZATION_BLOCK OB 1
+BEGIN
+NETWORK
+      U     E 0.0
+      =     M 9.0
+NETWORK
+      U     M 0.0
+      U     M 9.0
+      S     M 0.1
+      R     M 0.0
+NETWORK
+      U     M 0.1
+      UN    E 0.1
+      S     M 0.0
+      R     M 0.1
+NETWORK
+      O     M 0.0
+      O(
+      U     M 0.1
+      U     E 0.2
+      )
+      =     A 4.0
+END_ORGANIZATION_BLOCK
+";
+
+#[test]
+fn a_sequence_coded_with_bits_is_drawn() {
+    let symbols = "126,Attente                 M       0.0   BOOL      Pas de pi\u{e8}ce                    \n";
+    let it = only(&[("a.awl", SEQUENCE), ("a.asc", symbols)], Kind::Chart);
+    assert_sound(&it);
+    assert_eq!(it.title(), "OB1 - M0.0");
+    let svg = it.svg(Theme::Light);
+    let all = texts(&svg);
+    for wanted in ["M0.0", "M0.1", "M9.0", "NOT E0.1", "A4.0", "A4.0 when E0.2"] {
+        assert!(all.iter().any(|it| it == wanted), "{wanted}: {all:?}");
+    }
+    assert!(svg.contains("Attente"), "{svg}");
+    let dot = it.dot().expect("a graph");
+    assert_eq!((dot.matches(" -> ").count(), dot.matches("peripheries=2").count()), (4, 1), "{dot}");
+    assert!(it.mermaid().expect("a graph").contains("M9.0"));
+}
+
+#[test]
+fn findings_are_marked_in_sequences() {
+    // Both steps are left as soon as they are reached, for nothing else is asked.
+    let skipped = SEQUENCE.replace("UN    E 0.1", "U     M 9.0");
+    let it = only(&[("a.awl", &skipped)], Kind::Chart);
+    let titles = titles(&it.svg(Theme::Light));
+    assert!(titles.iter().any(|it| it.contains("Q001") || it.contains("Q002")), "{titles:?}");
+}
+
 /// Every program of the corpus.
 #[test]
 fn the_corpus_is_drawn() {

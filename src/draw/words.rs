@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::model::UnitModel;
-use crate::model::expr::{Expr, ExprId, Operator};
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::unit::{Pin, StatementKind};
 use crate::syntax::pl7::ast::Sentence;
 use crate::syntax::{AstNode as _, SyntaxKind, SyntaxNode};
@@ -93,8 +93,19 @@ pub(super) fn statements(model: &UnitModel) -> Vec<(u32, String)> {
 
 /// A condition or value, written out as far as it is short.
 pub(super) fn condition(model: &UnitModel, id: ExprId) -> String {
-    let mut writer = Writer { model, out: String::new(), left: MOST };
-    writer.write(id, 0, 0);
+    all_of(&model.exprs, &|it| model.object(it).text.as_str(), &[id])
+}
+
+/// Conditions that are to hold together, written as one. `name`: what an object is called.
+pub(super) fn all_of<'n>(exprs: &Exprs, name: &dyn Fn(ObjectId) -> &'n str, parts: &[ExprId]) -> String {
+    let mut writer = Writer { exprs, name, out: String::new(), left: MOST };
+    let strength = if parts.len() > 1 { AND } else { 0 };
+    for (at, part) in parts.iter().enumerate() {
+        if at > 0 {
+            writer.out.push_str(" AND ");
+        }
+        writer.write(*part, strength, 0);
+    }
     writer.out
 }
 
@@ -102,13 +113,17 @@ pub(super) fn condition(model: &UnitModel, id: ExprId) -> String {
 const MOST: u32 = 80;
 const DEEPEST: u32 = 40;
 
-struct Writer<'a> {
-    model: &'a UnitModel,
+/// How strongly `AND` binds.
+const AND: u8 = 3;
+
+struct Writer<'a, 'n> {
+    exprs: &'a Exprs,
+    name: &'a dyn Fn(ObjectId) -> &'n str,
     out: String,
     left: u32,
 }
 
-impl Writer<'_> {
+impl Writer<'_, '_> {
     /// `strength`: how strongly the operator around it binds.
     fn write(&mut self, id: ExprId, strength: u8, depth: u32) {
         if self.left == 0 || depth > DEEPEST {
@@ -116,9 +131,8 @@ impl Writer<'_> {
             return;
         }
         self.left -= 1;
-        let model = self.model;
-        let name = |object| model.object(object).text.as_str();
-        match model.exprs.get(id) {
+        let (exprs, name) = (self.exprs, self.name);
+        match exprs.get(id) {
             Expr::Bool(value) => self.out.push_str(if *value { "TRUE" } else { "FALSE" }),
             Expr::Int(value) => {
                 let _ = write!(self.out, "{value}");
@@ -142,7 +156,7 @@ impl Writer<'_> {
             }
             Expr::Or(a, b) => self.pair(" OR ", 1, strength, (*a, *b), depth),
             Expr::Xor(a, b) => self.pair(" XOR ", 2, strength, (*a, *b), depth),
-            Expr::And(a, b) => self.pair(" AND ", 3, strength, (*a, *b), depth),
+            Expr::And(a, b) => self.pair(" AND ", AND, strength, (*a, *b), depth),
             Expr::Compare(comparison, a, b) => self.pair(comparison.as_str(), 5, strength, (*a, *b), depth),
             Expr::Binary(operator, a, b) => {
                 let (text, own) = match operator {

@@ -615,11 +615,12 @@ impl Tally {
                 self.rung += 1;
                 self.cells += 1;
             }
-            "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK" => {
+            "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK"
+            | "SOURCE_CONNECTOR" | "DEST_CONNECTOR" => {
                 self.chart += 1;
                 self.pages += 1;
             }
-            "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" => self.chart += 1,
+            "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" | "IN_STEP" | "OUT_STEP" => self.chart += 1,
             "STEP" | "TRANSITION" | "ACTION" | "END_ACTION" | "PAGE" if is_chart_line(code, first) => {
                 self.chart_words += 1;
                 self.steps += u32::from(first == "STEP");
@@ -1277,6 +1278,11 @@ mod tests {
         check("a.scy", "Dear reader", unsupported(unsupported::VARIABLES));
         check("a.ufb", "[HEADER]\n[SOURCE_UNIT]\nA8F0\n[EOF]", unsupported(unsupported::ENCRYPTED));
         check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
+        // The smallest expansion, on a page of its own.
+        for page in ["", "PAGE 0\n", "END_PAGE\n"] {
+            let text = format!("GR7 : MAST - P - MACRO2\n{page}IN_STEP AT (C 0,L 1)\nOUT_STEP AT (C 0,L 3)\n");
+            check("a.txt", &text, Detected::Pasted(Pl7Text::Gr7));
+        }
         check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", Detected::Pasted(Pl7Text::Gr7));
         check(
             "a.gr7",

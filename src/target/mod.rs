@@ -490,6 +490,14 @@ impl Target {
         }
     }
 
+    /// Jumps of a program, and so of each of its parts; `None` where nothing limits them.
+    pub const fn jumps(&self) -> Option<Limit> {
+        match self.family {
+            Family::Pl72 => Some(pl72::JUMPS),
+            Family::Pl7 | Family::Step5 | Family::Step7 => None,
+        }
+    }
+
     /// Longest label, in characters; `None` where labels are numbers.
     pub const fn label_length(&self) -> Option<Limit> {
         match self.family {

@@ -30,6 +30,14 @@ pub struct Fault {
     pub site: Site,
     pub message: String,
     pub related: Vec<(Site, String)>,
+    /// The table that keeps bits.
+    pub table: Option<Footprint>,
+}
+
+impl Fault {
+    fn new(kind: FaultKind, site: Site, message: String, related: Vec<(Site, String)>) -> Self {
+        Self { kind, site, message, related, table: None }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -419,7 +427,7 @@ impl Graph<'_, '_> {
         let copy = all.iter().filter(writes_before).find(|it| is_copy(it));
         let (name, of) = (self.text(before), self.text(now));
         let what = "the table of the scan before";
-        let fault = |site, message, related| Fault { kind: FaultKind::Stale, site, message, related };
+        let fault = |site, message, related| Fault::new(FaultKind::Stale, site, message, related);
         let Some(copy) = copy else {
             return Some(fault(place, format!("{what}, {name}, is not copied from {of} in the scan"), Vec::new()));
         };
@@ -461,7 +469,8 @@ impl Graph<'_, '_> {
         let message = format!("{} is not cleared before its bits are set", self.text(table));
         let late = events().find(clears).map(|it| (it.1.site, "cleared here, too late".to_owned()));
         let site = first.1.site;
-        Some(Fault { kind: FaultKind::NotCleared, site, message, related: late.into_iter().collect() })
+        let fault = Fault::new(FaultKind::NotCleared, site, message, late.into_iter().collect());
+        Some(Fault { table: Some(table.clone()), ..fault })
     }
 
     /// The equation of forces: the tables of forces to 1 and to 0, and whether the latter wins.
@@ -490,7 +499,7 @@ impl Graph<'_, '_> {
         if is_off {
             let text = |it: ObjectId| format!("`{}`", self.trace.object(it).text);
             let message = format!("a force to 0 in {} wins over one to 1 in {}", text(zero), text(one));
-            faults.push(Fault { kind: FaultKind::ForcedOff, site: event.site, message, related: Vec::new() });
+            faults.push(Fault::new(FaultKind::ForcedOff, event.site, message, Vec::new()));
         }
         for it in [one, zero] {
             faults.extend(self.not_cleared(&self.trace.object(it).footprint, None, Some(at)));
@@ -515,7 +524,7 @@ impl Graph<'_, '_> {
         let event = self.trace.events.get(crossed.sets.first()?.1)?;
         let message =
             format!("this transition waits for no step, and is passed by while {} is 0", self.text(&self.words.before));
-        asks.then_some(Fault { kind: FaultKind::PassedBy, site: event.site, message, related: Vec::new() })
+        asks.then_some(Fault::new(FaultKind::PassedBy, event.site, message, Vec::new()))
     }
 
     /// Blocks in another order than graphs, forces, counters, timers, outputs (GRF:181-193, 618-630).
@@ -565,12 +574,9 @@ impl Graph<'_, '_> {
         let mut faults = Vec::new();
         for (at, &(_, unit, part)) in blocks.iter().enumerate() {
             let Some(&(_, late, before)) = blocks[at..].iter().find(|it| it.2 < part) else { continue };
-            faults.push(Fault {
-                kind: FaultKind::Misplaced,
-                site: place(unit),
-                message: format!("the {} are computed before the {} are", NAMES[part], NAMES[before]),
-                related: vec![(place(late), format!("the {} are computed here", NAMES[before]))],
-            });
+            let message = format!("the {} are computed before the {} are", NAMES[part], NAMES[before]);
+            let related = vec![(place(late), format!("the {} are computed here", NAMES[before]))];
+            faults.push(Fault::new(FaultKind::Misplaced, place(unit), message, related));
         }
         faults
     }

@@ -52,6 +52,7 @@ pub const PAGE_WORDS: Limit = Limit::new(128, "PL72:1094-1101");
 /// Words that can be indexed.
 pub const INDEXED_WORDS: Range = Range::new(0, 127, "PL72:994");
 
+pub const JUMPS: Limit = Limit::new(42, "PL72:418");
 /// Pages of a chart, P0 to P7.
 pub const CHART_PAGES: Limit = Limit::new(8, "PL72:1346-1347");
 pub const CHART_COLUMNS: Limit = Limit::new(8, "PL72:1341");
