@@ -9,6 +9,7 @@ use SyntaxKind::{
 };
 use logos::{Lexer, Logos};
 
+use super::parser::Tokens;
 use super::{AstNode, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,15 +98,7 @@ fn unclosed_length(text: &str) -> usize {
 }
 
 fn lex(text: &str) -> Vec<Token> {
-    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4 + 1);
-    let mut push = |kind: SyntaxKind, len: usize| {
-        // Units are below 4 GiB: the source layer reads no larger file.
-        let len = u32::try_from(len).unwrap_or(u32::MAX);
-        match tokens.last_mut() {
-            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
-            _ => tokens.push(Token { kind, len }),
-        }
-    };
+    let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut offset = 0;
     // A value without closing quote is cut back, after which the lexer goes on inside its token.
     while offset < text.len() {
@@ -116,14 +109,14 @@ fn lex(text: &str) -> Vec<Token> {
             offset = start + lexer.span().end;
             let is_open = lexeme == Ok(Lexeme::CharString) && (slice.len() < 2 || !slice.ends_with('\''));
             let len = if is_open { unclosed_length(slice) } else { slice.len() };
-            push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), len);
+            tokens.push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), len);
             if len < slice.len() {
                 offset -= slice.len() - len;
                 break;
             }
         }
     }
-    tokens
+    tokens.finish()
 }
 
 /// Parses the text around programs. Total and linear for every text; nothing in it is an error.
