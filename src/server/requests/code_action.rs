@@ -137,8 +137,8 @@ fn comment(it: &InFile<'_>, range: TextRange, text: &str) -> Option<TextEdit> {
     let at = line.start().max(cursor.offset);
     let language = cursor.unit.language(it.db);
     let comment = match language {
-        Language::Awl(_) | Language::Step5(_) => format!("// {text}"),
-        Language::Exchange | Language::Step5Symbols | Language::Pl7Xref => return None,
+        it if it.is_statement_list() => format!("// {text}"),
+        it if it.declares_symbols() || it == Language::Pl7Xref => return None,
         _ => format!("(* {text} *)"),
     };
     let blanks = content.find(|it| it != ' ' && it != '\t').unwrap_or(0);
