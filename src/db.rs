@@ -1068,7 +1068,6 @@ fn program_drawings<'db>(
     };
     let models: Vec<UnitModel> = units.iter().zip(&trees).map(lower).collect();
     let views = units.iter().zip(&trees).zip(&models).map(|((&unit, tree), model)| draw::Unit {
-        text: unit.text(db),
         language: unit.language(db),
         tree: tree.syntax(),
         model,

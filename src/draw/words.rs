@@ -154,10 +154,6 @@ impl Writer<'_> {
                     Operator::And => (" AND ", 5),
                     Operator::Or => (" OR ", 5),
                     Operator::Xor => (" XOR ", 5),
-                    Operator::Shift | Operator::Other => {
-                        self.out.push('…');
-                        return;
-                    }
                 };
                 self.pair(text, own, strength, (*a, *b), depth);
             }

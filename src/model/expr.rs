@@ -103,9 +103,6 @@ pub enum Operator {
     And,
     Or,
     Xor,
-    Shift,
-    /// A conversion, a rotation, a function of one or two values: known to be pure, not to be folded.
-    Other,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

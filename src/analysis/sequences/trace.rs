@@ -27,8 +27,6 @@ pub struct Event {
     pub when: ExprId,
     /// What is assigned or stored, where it is understood.
     pub value: Option<ExprId>,
-    /// Version that it makes.
-    pub version: u32,
     pub site: Site,
     /// Network of its unit.
     pub network: u32,
@@ -208,11 +206,6 @@ impl<'a> Trace<'a> {
         self.exprs.read(object, 0)
     }
 
-    /// What a version of a bit is worth, as the program says it.
-    pub fn value(&self, object: ObjectId, version: u32) -> Option<ExprId> {
-        self.values.get(&(object, version)).copied()
-    }
-
     /// Under which condition a timer was started whose state is read.
     pub fn started(&self, read: ExprId) -> Option<ExprId> {
         let Expr::Read { object, version } = *self.exprs.get(read) else { return None };
@@ -369,11 +362,10 @@ impl<'a> Runner<'_, 'a> {
     }
 
     /// A bit takes a value when control passes here.
-    fn give(&mut self, object: ObjectId, value: ExprId, path: ExprId) -> u32 {
+    fn give(&mut self, object: ObjectId, value: ExprId, path: ExprId) {
         let before = self.read(object, path);
         let version = self.bump(object);
         self.give_version(object, version, before, value, path);
-        version
     }
 
     fn give_version(&mut self, object: ObjectId, version: u32, before: ExprId, value: ExprId, path: ExprId) {
@@ -534,7 +526,7 @@ impl<'a> Runner<'_, 'a> {
         network: u32,
     ) {
         let (mut when, mut given) = (path, value);
-        let version = match (how, value) {
+        match (how, value) {
             (How::Set | How::Reset, Some(condition)) => {
                 when = self.trace.exprs.and(path, condition);
                 given = None;
@@ -549,7 +541,6 @@ impl<'a> Runner<'_, 'a> {
                 };
                 self.trace.values.insert((object, version), made);
                 self.assigned.remove(&object);
-                version
             }
             (How::Assign, Some(value)) => {
                 // The value of another bit, kept for the next scan.
@@ -559,7 +550,7 @@ impl<'a> Runner<'_, 'a> {
                 {
                     self.trace.memories.insert(object, value);
                 }
-                self.give(object, value, path)
+                self.give(object, value, path);
             }
             _ => {
                 let version = self.bump(object);
@@ -568,11 +559,10 @@ impl<'a> Runner<'_, 'a> {
                     self.words.insert((object, version), value);
                 }
                 self.store_bits(object, value, path);
-                version
             }
-        };
+        }
         let root = self.root;
-        self.trace.events.push(Event { how, object, when, value: given, version, site, network, unit, root });
+        self.trace.events.push(Event { how, object, when, value: given, site, network, unit, root });
     }
 
     /// The bits of a word take theirs.
