@@ -21,6 +21,7 @@ pub mod flow;
 pub mod gaps;
 pub mod known;
 pub mod modules;
+pub mod nesting;
 pub mod operands;
 pub mod parameters;
 pub mod priority;
@@ -30,6 +31,7 @@ pub mod reach;
 pub mod sequences;
 pub mod size;
 pub mod symbols;
+pub mod used;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -357,6 +357,13 @@ impl Exprs {
         }
     }
 
+    /// Whether a condition, or something that it is made of, is what `is` says.
+    pub fn has_part(&self, condition: ExprId, is: impl Fn(&Expr) -> bool) -> bool {
+        let mut found = false;
+        self.each_part(condition, |id| found |= is(self.get(id)));
+        found
+    }
+
     /// Every object that a condition reads or tests for an edge.
     pub fn each_object(&self, condition: ExprId, mut each: impl FnMut(ObjectId)) {
         self.each_part(condition, |id| match self.get(id) {

@@ -617,6 +617,12 @@ impl UnitModel {
         self.statements.get(access.statement as usize)
     }
 
+    /// What some statements read and write. Accesses stand in the order of their statements.
+    pub fn accesses_of(&self, statements: &Range<u32>) -> &[Access] {
+        let before = |end: u32| self.accesses.partition_point(|it| it.statement < end);
+        self.accesses.get(before(statements.start)..before(statements.end)).unwrap_or_default()
+    }
+
     /// The condition of a statement itself, without the path to it: under which it acts, or control goes another way.
     /// `None` for what asks none, such as an assignment.
     pub fn condition(&self, statement: &Statement) -> Option<ExprId> {
