@@ -43,6 +43,8 @@ pub struct Trace<'a> {
     /// In the order of execution.
     pub events: Vec<Event>,
     pub family: Family,
+    /// Some calls were not followed: too deep, in a circle, or too many.
+    pub is_cut: bool,
     /// Value of each version but the first of a bit.
     values: FxHashMap<(ObjectId, u32), ExprId>,
     /// Versions at the end of the scan.
@@ -122,6 +124,7 @@ impl<'a> Trace<'a> {
             objects: Vec::new(),
             events: Vec::new(),
             family: program.family,
+            is_cut: false,
             values: FxHashMap::default(),
             last: Vec::new(),
             started: FxHashMap::default(),
@@ -386,6 +389,7 @@ impl<'a> Runner<'_, 'a> {
         let facts = program.units[unit as usize];
         let Some(code) = facts.code.as_deref() else { return };
         if self.stack.len() >= DEEPEST || self.stack.contains(&unit) || self.budget < code.acts.len() {
+            self.trace.is_cut = true;
             return;
         }
         self.budget -= code.acts.len();
