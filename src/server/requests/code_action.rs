@@ -6,6 +6,7 @@ use lsp_types::{
     CodeAction, CodeActionKind, CodeActionParams, CodeActionRequest, CodeActionResponse, Position, Range, TextEdit,
 };
 use rowan::{TextRange, TextSize};
+use rustc_hash::FxHashSet;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -39,10 +40,14 @@ impl Handle for Handler {
             let range = it.text_range(params.range);
             let touched =
                 findings.iter().filter(|it| it.suppressed.is_none() && touches(it.finding.place.range, range));
+            let mut disabled: FxHashSet<&str> = FxHashSet::default();
             for finding in touched {
+                let rule = finding.finding.rule;
                 actions.extend(fixes(&it, finding));
                 actions.extend(suppress(&it, finding));
-                actions.extend(disable(&it, finding.finding.rule));
+                if disabled.insert(rule.code) {
+                    actions.extend(disable(&it, rule));
+                }
             }
         }
         if wants(only, &CodeActionKind::SourceFixAll) {
