@@ -53,6 +53,11 @@ pub enum How {
 }
 
 impl CodeFacts {
+    /// How much there is to do when it runs.
+    pub fn size(&self) -> usize {
+        self.acts.len() + self.pool.len()
+    }
+
     pub fn new(model: &UnitModel) -> Option<Box<Self>> {
         if !matches!(model.entity, Entity::Block { .. } | Entity::Listing) || model.statements.is_empty() {
             return None;

@@ -110,7 +110,7 @@ impl<'a> Trace<'a> {
         // The cyclic program before what interrupts it, each in its order.
         let is_interrupt = |it: u32| !program.contexts[it as usize].contains(&Context::Cyclic);
         units.sort_by_key(|&it| (is_interrupt(it), program.order[it as usize]));
-        let total: usize = program.units.iter().filter_map(|it| it.code.as_ref()).map(|it| it.acts.len()).sum();
+        let total: usize = program.units.iter().filter_map(|it| it.code.as_ref()).map(|it| it.size()).sum();
         let mut first_call = Vec::with_capacity(program.units.len());
         let mut next = 0;
         for unit in &program.units {
@@ -142,7 +142,7 @@ impl<'a> Trace<'a> {
             words: FxHashMap::default(),
             first_call,
             stack: Vec::new(),
-            budget: total.saturating_mul(4).saturating_add(20_000),
+            budget: total.saturating_mul(4).saturating_add(100_000),
             root: 0,
         };
         for unit in units {
@@ -388,11 +388,11 @@ impl<'a> Runner<'_, 'a> {
         let program = self.program;
         let facts = program.units[unit as usize];
         let Some(code) = facts.code.as_deref() else { return };
-        if self.stack.len() >= DEEPEST || self.stack.contains(&unit) || self.budget < code.acts.len() {
+        if self.stack.len() >= DEEPEST || self.stack.contains(&unit) || self.budget < code.size() {
             self.trace.is_cut = true;
             return;
         }
-        self.budget -= code.acts.len();
+        self.budget -= code.size();
         self.stack.push(unit);
         let scope = self.table.scope(unit, instance);
         let mut sites: FxHashMap<ObjectId, Site> = FxHashMap::default();
