@@ -669,9 +669,10 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     let leftovers =
         suppressions.leftovers(crate::lint::rules(), |rule| selection.severity(rule, rule.severity).is_some());
     let cx = FileCx { text: file.text(db), leftovers: &leftovers };
-    let ran = run_rules(settings, |rule, findings| match rule.check {
-        Check::File(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
-        _ => {}
+    let ran = run_rules(settings, |rule, findings| {
+        if let Check::File(check) = rule.check {
+            crate::lint::run(rule, findings, |sink| check(&cx, sink));
+        }
     });
     for finding in ran.findings {
         let Some(mut finding) = finding.map(|range| Some(FilePlace { file, range })) else { continue };
