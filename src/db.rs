@@ -281,13 +281,7 @@ pub struct Program<'db> {
 
 /// Whose controllers a unit is for: code by its language, what stands around code as its file.
 fn unit_family(db: &dyn Db, unit: Unit<'_>) -> Option<Family> {
-    match unit.language(db) {
-        Language::Exchange => family(unit.file(db).detected(db)),
-        Language::Awl(_) | Language::SymbolTable => Some(Family::Step7),
-        Language::Step5(_) | Language::Step5Symbols => Some(Family::Step5),
-        language if language.is_pl7_2() => Some(Family::Pl72),
-        _ => Some(Family::Pl7),
-    }
+    Family::of(unit.language(db)).or_else(|| family(unit.file(db).detected(db)))
 }
 
 /// Families of the units of a file, of its code only where it has any: parts of PL7 and of PL7-2 may share a text.
@@ -675,9 +669,10 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     let leftovers =
         suppressions.leftovers(crate::lint::rules(), |rule| selection.severity(rule, rule.severity).is_some());
     let cx = FileCx { text: file.text(db), leftovers: &leftovers };
-    let ran = run_rules(settings, |rule, findings| match rule.check {
-        Check::File(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
-        _ => {}
+    let ran = run_rules(settings, |rule, findings| {
+        if let Check::File(check) = rule.check {
+            crate::lint::run(rule, findings, |sink| check(&cx, sink));
+        }
     });
     for finding in ran.findings {
         let Some(mut finding) = finding.map(|range| Some(FilePlace { file, range })) else { continue };
@@ -1150,7 +1145,6 @@ fn program_drawings<'db>(
     };
     let models: Vec<UnitModel> = units.iter().zip(&trees).map(lower).collect();
     let views = units.iter().zip(&trees).zip(&models).map(|((&unit, tree), model)| draw::Unit {
-        text: unit.text(db),
         language: unit.language(db),
         tree: tree.syntax(),
         model,
@@ -1197,9 +1191,8 @@ fn untargeted(db: &dyn Db, files: &[SourceFile], active: &[&Rule]) -> Vec<Family
 
 /// Bytes of tokens that the syntax could not place.
 fn not_understood(language: Language, parse: &Parse) -> usize {
-    // What is unknown between the programs of an exchange file, or in a vendor's table, is no mistake.
-    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Step5Symbols | Language::Pl7Xref)
-    {
+    // What is unknown between the programs of an exchange file, or in a project's listing, is no error of the syntax.
+    if parse.errors().is_empty() && !matches!(language, Language::Exchange | Language::Pl7Xref) {
         return 0;
     }
     let root = parse.syntax();

@@ -1,9 +1,8 @@
 //! G014: macro-steps where there are none, and expansions that are not what they must be.
 
-use rustc_hash::{FxHashMap, FxHashSet};
-
 use crate::analysis::Site;
-use crate::analysis::chart::{Chart, Step};
+use crate::analysis::chart::Chart;
+use crate::analysis::nesting::{by_section, macros};
 use crate::analysis::program::ProgramIndex;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::chart::{Graph, StepName};
@@ -14,17 +13,16 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if is_unavailable(cx, charts, sink) {
         return;
     }
-    let mut sections: Vec<Vec<&Chart<'_>>> = Vec::new();
-    let mut known = FxHashMap::default();
-    for chart in charts {
-        let at = *known.entry((chart.task, chart.section)).or_insert(sections.len());
-        if at == sections.len() {
-            sections.push(Vec::new());
+    for nesting in by_section(charts) {
+        for (number, place, before) in nesting.repeated {
+            sink.report(place, format!("macro-step `M{number}` is used a second time"))
+                .related(before, "first used here");
         }
-        sections[at].push(chart);
-    }
-    for section in sections {
-        uses(&section, sink);
+        for cycle in nesting.cycles {
+            let Some((&(number, place), others)) = cycle.split_first() else { continue };
+            sink.report(place, format!("the expansion of macro-step `M{number}` contains the macro-step itself"))
+                .related_all(others.iter().map(|(it, place)| (*place, format!("by way of macro-step `M{it}`"))));
+        }
     }
     for chart in charts {
         ends(chart, sink);
@@ -38,14 +36,6 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             sink.report(Site { unit, anchor: action.anchors.start }, message);
         }
     }
-}
-
-/// The macro-steps that stand in a chart.
-fn macros<'c, 'a>(chart: &'c Chart<'a>) -> impl Iterator<Item = (u32, &'c Step<'a>)> {
-    chart.steps.iter().filter_map(|it| match it.it.name {
-        Some(StepName::Macro(number)) => Some((number, it)),
-        _ => None,
-    })
 }
 
 /// Reports the macro-steps of a controller that has none.
@@ -68,47 +58,6 @@ fn is_unavailable(cx: &ProgramCx<'_>, charts: &[Chart<'_>], sink: &mut Sink<'_, 
 
 fn heading(chart: &Chart<'_>) -> Option<Site> {
     chart.steps.first().map(|it| ProgramIndex::heading(it.unit))
-}
-
-/// Macro-steps that stand in two places, and expansions that contain themselves.
-fn uses(section: &[&Chart<'_>], sink: &mut Sink<'_, Site>) {
-    let mut first: FxHashMap<u32, (Graph, &Step<'_>)> = FxHashMap::default();
-    for chart in section {
-        for (number, step) in macros(chart) {
-            match first.get(&number) {
-                Some((_, before)) => {
-                    sink.report(step.site(), format!("macro-step `M{number}` is used a second time"))
-                        .related(before.site(), "first used here");
-                }
-                None => {
-                    first.insert(number, (chart.graph, step));
-                }
-            }
-        }
-    }
-    // Each expansion is contained in one graph at most: what leads back to it is a cycle.
-    let mut seen: FxHashSet<u32> = FxHashSet::default();
-    let mut starts: Vec<u32> = first.keys().copied().collect();
-    starts.sort_unstable();
-    for start in starts {
-        let mut path = Vec::new();
-        let mut at = start;
-        while seen.insert(at) {
-            path.push(at);
-            let Some((Graph::Macro(outer), _)) = first.get(&at) else { break };
-            at = *outer;
-        }
-        let Some(from) = path.iter().position(|&it| it == at).filter(|_| cycles(&first, at)) else { continue };
-        let places: Vec<_> = path[from..].iter().filter_map(|it| Some((*it, first.get(it)?.1.site()))).collect();
-        let Some((&(number, place), others)) = places.split_first() else { continue };
-        sink.report(place, format!("the expansion of macro-step `M{number}` contains the macro-step itself"))
-            .related_all(others.iter().map(|(it, place)| (*place, format!("by way of macro-step `M{it}`"))));
-    }
-}
-
-/// Whether a macro-step stands in an expansion at all: a path ends at one that stands in the main chart.
-fn cycles(first: &FxHashMap<u32, (Graph, &Step<'_>)>, at: u32) -> bool {
-    matches!(first.get(&at), Some((Graph::Macro(_), _)))
 }
 
 /// The first and last step of an expansion. Where a connector leads to a page that is not there, so may they.

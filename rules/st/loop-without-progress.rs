@@ -19,7 +19,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         if it.exits || runs_once || !is_known(&cx.model.exprs, condition) || calls_unknown(cx, it) {
             continue;
         }
-        let body = accesses(cx, it);
+        let body = cx.model.accesses_of(&it.body);
         let tested: Vec<&Access> = body.iter().filter(|it| place.contains_range(cx.model.place(it.anchor))).collect();
         let can_change = |access: &&Access| {
             let object = cx.model.object(access.object);
@@ -46,23 +46,11 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
 
 /// Whether the whole condition was understood. A function without arguments may ask the system.
 fn is_known(exprs: &Exprs, condition: ExprId) -> bool {
-    let mut stack = vec![condition];
-    let mut seen = rustc_hash::FxHashSet::default();
-    while let Some(id) = stack.pop() {
-        if !seen.insert(id) {
-            continue;
-        }
-        match exprs.get(id) {
-            Expr::Opaque(_) => return false,
-            Expr::Call(name, arguments) if arguments.is_empty() || functions::lookup(name).is_none() => return false,
-            Expr::Call(_, arguments) => stack.extend(arguments.iter()),
-            Expr::Not(a) | Expr::Negate(a) => stack.push(*a),
-            Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) => stack.extend([*a, *b]),
-            Expr::Compare(_, a, b) | Expr::Binary(_, a, b) => stack.extend([*a, *b]),
-            Expr::Bool(_) | Expr::Int(_) | Expr::Float(_) | Expr::Text(_) | Expr::Read { .. } | Expr::Edge { .. } => {}
-        }
-    }
-    true
+    !exprs.has_part(condition, |it| match it {
+        Expr::Opaque(_) => true,
+        Expr::Call(name, arguments) => arguments.is_empty() || functions::lookup(name).is_none(),
+        _ => false,
+    })
 }
 
 /// Whether the loop calls what may write anything: a subroutine, an instance, a function with unknown arguments.
@@ -83,14 +71,6 @@ fn is_volatile(class: Class) -> bool {
         class,
         Class::Input | Class::Output | Class::Memory | Class::Constant | Class::Step | Class::MacroStep | Class::Symbol
     )
-}
-
-/// What the statements of a loop read and write. Accesses stand in the order of their statements.
-fn accesses<'a>(cx: &UnitCx<'a>, it: &Loop) -> &'a [Access] {
-    let all = &cx.model.accesses;
-    let start = all.partition_point(|access| access.statement < it.body.start);
-    let end = all.partition_point(|access| access.statement < it.body.end);
-    all.get(start..end).unwrap_or_default()
 }
 
 fn is_written(cx: &UnitCx<'_>, body: &[Access], tested: &Object) -> bool {

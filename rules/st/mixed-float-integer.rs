@@ -3,7 +3,7 @@
 use crate::syntax::AstNode as _;
 use rowan::TextRange;
 
-use crate::lint::{Applicability, Severity, Sink, UnitCx};
+use crate::lint::{Applicability, Reported, Severity, Sink, UnitCx};
 use crate::model::pl7_kinds::{Kind, Kinds};
 use crate::syntax::SyntaxKind;
 use crate::syntax::pl7::ast::{AssignStmt, BinExpr, CallExpr, CallStmt, Expr};
@@ -45,10 +45,8 @@ fn pair<'a>(
     }
     for it in [&a, &b] {
         if let Some(digits) = whole_constant(it) {
-            let text = cx.text_of(digits);
-            sink.report(digits, format!("the whole number `{text}` meets a floating-point number"))
-                .severity(Severity::Warning)
-                .replace(format!("Write `{text}.0`"), Applicability::Safe, digits, format!("{text}.0"));
+            let message = format!("the whole number `{}` meets a floating-point number", cx.text_of(digits));
+            as_float(cx, sink.report(digits, message), digits);
             return;
         }
     }
@@ -73,21 +71,17 @@ fn arguments<'a>(
         let place = argument.syntax().text_range();
         let text = cx.text_of(place);
         let message = format!("`{}` takes {}, and `{text}` is {}", function.name, wanted.describe(), kind.describe());
-        match whole_constant(&argument) {
-            Some(digits) => {
-                let text = cx.text_of(digits);
-                sink.report(place, message).severity(Severity::Warning).replace(
-                    format!("Write `{text}.0`"),
-                    Applicability::Safe,
-                    digits,
-                    format!("{text}.0"),
-                );
-            }
-            None => {
-                sink.report(place, message);
-            }
+        let finding = sink.report(place, message);
+        if let Some(digits) = whole_constant(&argument) {
+            as_float(cx, finding, digits);
         }
     }
+}
+
+/// Of a constant, nobody doubts which number was meant.
+fn as_float(cx: &UnitCx<'_>, finding: Reported<'_, TextRange>, digits: TextRange) {
+    let text = format!("{}.0", cx.text_of(digits));
+    finding.severity(Severity::Warning).replace(format!("Write `{text}`"), Applicability::Safe, digits, text);
 }
 
 /// The digits of a whole constant in base 10, behind its sign and parentheses.

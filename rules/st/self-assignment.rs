@@ -51,6 +51,6 @@ fn keeps(exprs: &Exprs, value: ExprId, target: ObjectId) -> bool {
         Operator::And => left && right,
         Operator::Sub => left && is(b, 0.0),
         Operator::Div => left && is(b, 1.0),
-        Operator::Rem | Operator::Shift | Operator::Other => false,
+        Operator::Rem => false,
     }
 }

@@ -39,14 +39,9 @@ pub fn judged(model: &UnitModel) -> Vec<TextRange> {
 /// What a statement asks, if it is a condition on which the run of the unit, or of an action, depends.
 fn asked(model: &UnitModel, statement: &Statement) -> Option<ExprId> {
     match statement.kind {
-        StatementKind::Branch { of: Fork::Receptivity, .. } => None,
-        StatementKind::Branch { condition, .. } => Some(condition),
-        StatementKind::Jump(at) => model.jumps.get(at as usize).map(|it| it.when),
-        StatementKind::Call(at) => model.calls.get(at as usize).map(|it| it.when),
-        StatementKind::Return { when, .. } | StatementKind::Set { when, .. } | StatementKind::Reset { when, .. } => {
-            Some(when)
-        }
-        _ => None,
+        // A block acts on 0 as well.
+        StatementKind::Branch { of: Fork::Receptivity, .. } | StatementKind::Drive { .. } => None,
+        _ => model.condition(statement),
     }
 }
 

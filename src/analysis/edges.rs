@@ -1,11 +1,14 @@
 //! Edge tests against the writes of their bits. A PL7 bit keeps its former state, which moves when the bit is written
-//! (PL7:1434-1439).
+//! (PL7:1434-1439); an edge made by hand is tested against a memory bit, which the program refreshes.
+
+use rustc_hash::FxHashMap;
 
 use super::drives;
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
-use crate::model::expr::Exprs;
+use crate::model::UnitModel;
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
 use crate::model::object::{Class, Type};
-use crate::model::unit::Mode;
+use crate::model::unit::{Mode, StatementKind};
 
 /// The places that write an internal bit with an edge, when they are those of one unit, none of them sets or resets, and
 /// no two take effect in one scan; else another rule speaks of the bit, or nothing is known.
@@ -63,4 +66,120 @@ pub fn skipped<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours:
         !together && (edge.it.skipped_by.is_some() || (!beside && program.is_passed_by(edge.unit)))
     };
     bit.with_mode(Mode::is_edge).filter(goes_on).copied().collect()
+}
+
+/// An edge made by hand, `U x`, `UN m`, whose test does not find in the memory what the bit was in the scan before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LostEdge {
+    /// Indices of the statements that test the edge, and that refresh the memory.
+    pub test: u32,
+    pub refresh: u32,
+    pub memory: ObjectId,
+    pub why: Lost,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lost {
+    /// The memory has the new value already.
+    Late,
+    /// In some runs the edge is tested, and the memory is not refreshed.
+    PassedBy,
+}
+
+/// The edges made by hand that are lost: one of each memory.
+pub fn lost(model: &UnitModel) -> Vec<LostEdge> {
+    let mut refreshes = refreshes(model);
+    let mut found = Vec::new();
+    for (at, test) in (0..).zip(&model.statements) {
+        if refreshes.is_empty() {
+            break;
+        }
+        let condition = match test.kind {
+            StatementKind::Assign { value, .. } => Some(value),
+            _ => model.condition(test),
+        };
+        let Some(condition) = condition else { continue };
+        let terms = terms(&model.exprs, condition);
+        for memory in &terms {
+            let Some(refresh) = refreshes.get(&memory.object) else { continue };
+            let is_bit = |it: &&Term| it.object == refresh.bit && it.negated != memory.negated;
+            let Some(bit) = terms.iter().find(is_bit) else { continue };
+            let Some(statement) = model.statements.get(refresh.at as usize) else { continue };
+            let is_late = refresh.at < at && memory.version == refresh.version && bit.version == refresh.taken;
+            let is_passed_by = at < refresh.at
+                && test.path != statement.path
+                && model.exprs.has_conjunct_prefix(statement.path, test.path);
+            if is_late || is_passed_by {
+                let why = if is_late { Lost::Late } else { Lost::PassedBy };
+                found.push(LostEdge { test: at, refresh: refresh.at, memory: memory.object, why });
+                refreshes.remove(&memory.object);
+            }
+        }
+    }
+    found
+}
+
+/// `U x`, `= m`
+struct Refresh {
+    /// Index of the statement.
+    at: u32,
+    /// Version of the memory that it makes.
+    version: u32,
+    bit: ObjectId,
+    /// Version of the bit that it takes.
+    taken: u32,
+}
+
+/// Memory bits with one write alone, which takes the value of another bit.
+fn refreshes(model: &UnitModel) -> FxHashMap<ObjectId, Refresh> {
+    let mut writes = vec![0_u32; model.objects.len()];
+    for it in model.accesses.iter().filter(|it| it.mode.writes()) {
+        writes[it.object.0 as usize] += 1;
+    }
+    let mut refreshes = FxHashMap::default();
+    for (at, statement) in (0..).zip(&model.statements).filter(|it| it.1.path != Exprs::FALSE) {
+        let StatementKind::Assign { access, value } = statement.kind else { continue };
+        let Some(access) = model.accesses.get(access as usize) else { continue };
+        let is_memory = matches!(model.object(access.object).class, Class::Memory | Class::Data | Class::LocalName);
+        let is_only = writes.get(access.object.0 as usize) == Some(&1);
+        if let Expr::Read { object: bit, version: taken } = *model.exprs.get(value)
+            && is_memory
+            && is_only
+            && bit != access.object
+        {
+            refreshes.insert(access.object, Refresh { at, version: access.version, bit, taken });
+        }
+    }
+    refreshes
+}
+
+/// A bit that a condition reads.
+struct Term {
+    object: ObjectId,
+    version: u32,
+    negated: bool,
+}
+
+/// The bits that a condition, or its contrary, wants together: a jump is taken when there is no edge, too.
+fn terms(exprs: &Exprs, condition: ExprId) -> Vec<Term> {
+    const MOST: usize = 64;
+    let start = match exprs.get(condition) {
+        Expr::Not(inner) => *inner,
+        _ => condition,
+    };
+    let (mut stack, mut terms) = (vec![start], Vec::new());
+    while let Some(id) = stack.pop().filter(|_| terms.len() < MOST) {
+        let (inner, negated) = match *exprs.get(id) {
+            Expr::And(a, b) => {
+                stack.extend([a, b]);
+                continue;
+            }
+            Expr::Not(inner) => (inner, true),
+            _ => (id, false),
+        };
+        if let Expr::Read { object, version } = *exprs.get(inner) {
+            terms.push(Term { object, version, negated });
+        }
+    }
+    terms
 }

@@ -22,6 +22,7 @@ pub mod gaps;
 pub mod islands;
 pub mod known;
 pub mod modules;
+pub mod nesting;
 pub mod operands;
 pub mod outline;
 pub mod parameters;
@@ -33,6 +34,7 @@ pub mod sequences;
 pub mod size;
 pub mod stuck;
 pub mod symbols;
+pub mod used;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -278,7 +278,7 @@ impl Cell {
                 let pins = widest(&self.pins[0]) + widest(&self.pins[1]) + 40;
                 pins.max(Style::Code.width(&cut(&clean(&self.text), OPERAND)) + 24)
             }
-            Some(_) => Style::Code.width(&cut(&clean(&self.text), OPERAND)) + 12 + 2 * self.tags().width() / 2,
+            Some(_) => Style::Code.width(&cut(&clean(&self.text), OPERAND)) + 12 + self.tags().width(),
         };
         let width = i32::try_from(self.width).unwrap_or(1).max(1);
         (text + width - 1) / width

@@ -37,9 +37,8 @@ pub struct Mark {
 /// A unit of a program.
 #[derive(Debug, Clone, Copy)]
 pub struct Unit<'a> {
-    pub text: &'a str,
     pub language: Language,
-    /// Tree and model of `text`.
+    /// Tree and model of its text.
     pub tree: SyntaxNode<'a>,
     pub model: &'a UnitModel,
     /// Findings with their primary places, relative to the unit.

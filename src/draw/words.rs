@@ -168,12 +168,17 @@ impl Writer<'_, '_> {
                     Operator::And => (" AND ", 5),
                     Operator::Or => (" OR ", 5),
                     Operator::Xor => (" XOR ", 5),
-                    Operator::Shift | Operator::Other => {
-                        self.out.push('…');
-                        return;
-                    }
                 };
-                self.pair(text, own, strength, (*a, *b), depth);
+                // What binds as strongly is read from the left; operations on words of one kind alone need no parentheses.
+                let is_same = |it: ExprId| matches!(model.exprs.get(it), Expr::Binary(of, ..) if of == operator);
+                let is_logic = matches!(operator, Operator::And | Operator::Or | Operator::Xor);
+                let left = own + u8::from(is_logic && !is_same(*a));
+                let right = own + u8::from(!is_logic || !is_same(*b));
+                self.enclosed(own < strength, |it| {
+                    it.write(*a, left, depth + 1);
+                    it.out.push_str(text);
+                    it.write(*b, right, depth + 1);
+                });
             }
             Expr::Call(name, arguments) => {
                 self.out.push_str(name);
@@ -191,15 +196,48 @@ impl Writer<'_, '_> {
     }
 
     fn pair(&mut self, text: &str, own: u8, strength: u8, (a, b): (ExprId, ExprId), depth: u32) {
-        let is_enclosed = own < strength;
+        self.enclosed(own < strength, |it| {
+            it.write(a, own, depth + 1);
+            it.out.push_str(text);
+            it.write(b, own, depth + 1);
+        });
+    }
+
+    fn enclosed(&mut self, is_enclosed: bool, write: impl FnOnce(&mut Self)) {
         if is_enclosed {
             self.out.push('(');
         }
-        self.write(a, own, depth + 1);
-        self.out.push_str(text);
-        self.write(b, own, depth + 1);
+        write(self);
         if is_enclosed {
             self.out.push(')');
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::entity::Entity;
+    use crate::model::lower;
+    use crate::syntax::{self, Language};
+
+    #[test]
+    fn values_are_written_as_they_are_read() {
+        for value in [
+            "%MW1-(%MW2-%MW3)",
+            "%MW1-%MW2-%MW3",
+            "%MW1*(%MW2/%MW3)",
+            "%MW1*%MW2/%MW3",
+            "(%MW1+%MW2)*%MW3",
+            "%MW1 AND (%MW2 OR %MW3)",
+            "(%MW1 OR %MW2) AND %MW3",
+            "%MW1 AND %MW2 AND %MW3",
+        ] {
+            let text = format!("! %MW0 := {value};");
+            let parse = syntax::parse(Language::Pl7St, &text);
+            let model = lower::lower(parse.syntax(), &text, Entity::Listing, Language::Pl7St);
+            let found = statements(&model);
+            assert_eq!(found.first().map(|it| it.1.clone()), Some(format!("%MW0 := {value}")));
         }
     }
 }

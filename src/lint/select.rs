@@ -136,10 +136,6 @@ impl Selection {
         self.registry.binary_search_by(|it| it.code.cmp(rule.code)).ok()
     }
 
-    pub fn is_on(&self, rule: &Rule) -> bool {
-        self.index(rule).is_some_and(|at| self.on[at])
-    }
-
     /// The severity to report a finding with, when the finding itself deserves `deserved`: what the user configured
     /// wins. `None` when the rule is off.
     pub fn severity(&self, rule: &Rule, deserved: Severity) -> Option<Severity> {

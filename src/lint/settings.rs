@@ -600,8 +600,8 @@ impl Settings {
         selection
     }
 
-    /// The severity of a rule for a file; `None` when the rule is off there. Asking for many rules of one file, ask
-    /// [`Self::selection`] once.
+    /// The severity of a rule for a file; `None` when the rule is off there.
+    #[cfg(test)]
     pub fn enabled(&self, rule: &Rule, path: &str) -> Option<Severity> {
         self.selection(path).severity(rule, rule.severity)
     }

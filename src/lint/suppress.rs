@@ -278,10 +278,6 @@ impl Suppressions {
         self.entries.is_empty()
     }
 
-    pub fn entries(&self) -> &[Entry] {
-        &self.entries
-    }
-
     /// Whether a finding of the rule on this line is suppressed, and then the reason given, which may be empty. Marks
     /// the comment as used: the one of the line before the one of the statement, before the one of the file.
     pub fn suppress(&mut self, rule: &Rule, line: u32) -> Option<&str> {

@@ -4,6 +4,8 @@ use std::fmt;
 
 use smol_str::SmolStr;
 
+use crate::syntax::Language;
+
 /// The vendor family, which decides how blocks are named, called and scanned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
@@ -16,6 +18,22 @@ pub enum Family {
 }
 
 impl Family {
+    /// Whose language it is. `None` where the file around the text must tell.
+    pub fn of(language: Language) -> Option<Self> {
+        match language {
+            Language::Awl(_) | Language::SymbolTable => Some(Self::Step7),
+            Language::Step5(_) | Language::Step5Symbols => Some(Self::Step5),
+            Language::Pl72Ld | Language::Pl72Gr7 | Language::Pl72Sfc => Some(Self::Pl72),
+            Language::Pl7Il
+            | Language::Pl7St
+            | Language::Pl7Ld
+            | Language::Pl7Gr7
+            | Language::Sfc
+            | Language::Pl7Xref => Some(Self::Pl7),
+            Language::Exchange => None,
+        }
+    }
+
     /// Whether blocks are Siemens's, named by kind and number.
     pub fn has_blocks(self) -> bool {
         matches!(self, Self::Step5 | Self::Step7)

@@ -103,9 +103,6 @@ pub enum Operator {
     And,
     Or,
     Xor,
-    Shift,
-    /// A conversion, a rotation, a function of one or two values: known to be pure, not to be folded.
-    Other,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -358,6 +355,13 @@ impl Exprs {
                 each(id);
             }
         }
+    }
+
+    /// Whether a condition, or something that it is made of, is what `is` says.
+    pub fn has_part(&self, condition: ExprId, is: impl Fn(&Expr) -> bool) -> bool {
+        let mut found = false;
+        self.each_part(condition, |id| found |= is(self.get(id)));
+        found
     }
 
     /// Every object that a condition reads or tests for an edge.

@@ -367,7 +367,7 @@ impl Layouts {
             if at > MOST_BITS {
                 return layout;
             }
-            let Field { name, section, anchor, .. } = field.clone();
+            let (name, section, anchor) = (field.name.clone(), field.section, field.anchor);
             layout.fields.push(Placed { name, section, anchor, start, shape });
         }
         layout.bits = Some(at.next_multiple_of(WORD));
@@ -489,7 +489,8 @@ impl Layout {
             if let Shape::Array(dimensions, of) = shape {
                 let mut indices = Vec::with_capacity(dimensions.len());
                 for it in dimensions {
-                    let index = (bit - place.start) / it.step;
+                    // Elements may be structures without fields.
+                    let index = (bit - place.start).checked_div(it.step)?;
                     let count = u32::try_from(i64::from(it.last) - i64::from(it.first) + 1).ok()?;
                     if index >= count {
                         return None;
@@ -537,6 +538,16 @@ mod tests {
 
     fn offsets(layout: &Layout) -> Vec<String> {
         layout.fields.iter().map(|it| format!("{}.{} {}", it.start / 8, it.start % 8, it.name)).collect()
+    }
+
+    #[test]
+    fn nothing_lies_in_an_array_of_nothing() {
+        let empty = DataType::Struct(Box::default());
+        let layout =
+            Layouts::of_fields(&[simple("a", "WORD"), field("b", DataType::Array([(1, 5)].into(), empty.into()))]);
+        assert_eq!(layout.bits, Some(16));
+        assert_eq!(layout.at(8).map(|it| it.path), Some("a".to_owned()));
+        assert_eq!((layout.at(16), layout.at(100)), (None, None));
     }
 
     #[test]

@@ -617,6 +617,32 @@ impl UnitModel {
         self.statements.get(access.statement as usize)
     }
 
+    /// What some statements read and write. Accesses stand in the order of their statements.
+    pub fn accesses_of(&self, statements: &Range<u32>) -> &[Access] {
+        let before = |end: u32| self.accesses.partition_point(|it| it.statement < end);
+        self.accesses.get(before(statements.start)..before(statements.end)).unwrap_or_default()
+    }
+
+    /// The condition of a statement itself, without the path to it: under which it acts, or control goes another way.
+    /// `None` for what asks none, such as an assignment.
+    pub fn condition(&self, statement: &Statement) -> Option<ExprId> {
+        match statement.kind {
+            StatementKind::Set { when, .. }
+            | StatementKind::Reset { when, .. }
+            | StatementKind::Drive { when, .. }
+            | StatementKind::Return { when, .. } => Some(when),
+            StatementKind::Call(call) => self.calls.get(call as usize).map(|it| it.when),
+            StatementKind::Jump(jump) => self.jumps.get(jump as usize).map(|it| it.when),
+            StatementKind::Branch { condition, .. } => Some(condition),
+            StatementKind::Assign { .. }
+            | StatementKind::Store { .. }
+            | StatementKind::Halt
+            | StatementKind::Exit
+            | StatementKind::Open
+            | StatementKind::Other => None,
+        }
+    }
+
     /// Whether an access is one of structured text.
     pub fn is_structured_text(&self, access: &Access) -> bool {
         match self.chart.as_ref().filter(|_| self.language.is_chart()) {

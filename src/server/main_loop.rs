@@ -55,8 +55,8 @@ enum Event {
     },
     /// A write came between.
     Stale(Request),
-    /// Nothing to tell before something changes.
-    Suspended(Request),
+    /// Nothing to tell before something is other than in that revision.
+    Suspended(Request, u64),
     /// Findings of a file that are others than those told before.
     Found {
         revision: u64,
@@ -208,8 +208,10 @@ impl Server {
                 self.answer(response);
             }
             Event::Stale(request) => self.stale(request),
-            Event::Suspended(request) => {
-                if self.pending.contains_key(&request.id) {
+            Event::Suspended(request, revision) => {
+                if revision != self.revision {
+                    self.dispatch(request);
+                } else if self.pending.contains_key(&request.id) {
                     self.suspended.push(request);
                 }
             }
@@ -293,7 +295,7 @@ impl Server {
             };
             let event = match answer {
                 Ok(Some(Ok(value))) => respond(Ok(value)),
-                Ok(Some(Err(Fault::Unchanged))) => Event::Suspended(request),
+                Ok(Some(Err(Fault::Unchanged))) => Event::Suspended(request, revision),
                 Ok(Some(Err(Fault::Refused(message)))) => respond(error(ErrorCode::RequestFailed, message)),
                 Ok(Some(Err(Fault::Params(message)))) => respond(error(ErrorCode::InvalidParams, message)),
                 Ok(None) => Event::Stale(request),
@@ -463,7 +465,8 @@ impl Server {
     }
 
     fn did_change_files(&mut self, params: DidChangeWatchedFilesParams) {
-        let mut reload: FxHashSet<usize> = FxHashSet::default();
+        // By their ids: a configuration changes the places of roots.
+        let mut reload: FxHashSet<u32> = FxHashSet::default();
         for event in params.changes {
             let path = convert::path_of(&event.uri);
             self.revision += 1;
@@ -474,11 +477,11 @@ impl Server {
             }
             let Some(root) = self.folder_of(&path) else { continue };
             if name == ".gitignore" || name == ".ignore" {
-                reload.insert(root);
+                reload.insert(self.roots[root].id);
             } else if !has_plc_extension(Path::new(&path)) && Path::new(&path).extension().is_some() {
                 continue;
             } else if event.kind != FileChangeType::Changed || !self.roots[root].found(&path) {
-                reload.insert(root);
+                reload.insert(self.roots[root].id);
             } else if !self.documents.contains_key(&path)
                 && let Some(root) = self.roots.get_mut(root)
             {
@@ -486,7 +489,8 @@ impl Server {
                 root.list();
             }
         }
-        reload.into_iter().for_each(|root| self.start_load(root));
+        let places: Vec<usize> = (0..self.roots.len()).filter(|&at| reload.contains(&self.roots[at].id)).collect();
+        places.into_iter().for_each(|at| self.start_load(at));
         self.client.refresh(&self.abilities);
     }
 

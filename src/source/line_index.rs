@@ -3,8 +3,6 @@
 use memchr::memchr2_iter;
 use rowan::{TextRange, TextSize};
 
-use super::decode::{Encoding, SourceText};
-
 /// A place as an editor shows it. Both count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineCol {
@@ -88,20 +86,6 @@ impl LineIndex {
     pub fn line_text<'t>(&self, text: &'t str, number: u32) -> Option<&'t str> {
         let line = text.get(std::ops::Range::<usize>::from(self.line_range(number)?))?;
         Some(line.strip_suffix("\r\n").or_else(|| line.strip_suffix(['\n', '\r'])).unwrap_or(line))
-    }
-
-    /// The byte of the original file at which the character at `offset` starts. `None` if the file cannot tell, as
-    /// bytes that mean nothing in a multi-byte encoding were replaced.
-    pub fn original_offset(&self, offset: TextSize, source: &SourceText) -> Option<u64> {
-        let offset = self.floor(offset);
-        let mark = if source.bom { source.encoding.byte_order_mark().len() as u64 } else { 0 };
-        let after_mark = match source.encoding {
-            encoding if encoding.is_single_byte() => u64::from(self.characters(0, offset)),
-            _ if source.malformed => return None,
-            Encoding::Utf16Le | Encoding::Utf16Be => 2 * u64::from(self.utf16_units(0, offset)),
-            _ => u64::from(offset),
-        };
-        Some(mark + after_mark)
     }
 
     /// Line counted from 0, its start, and the start of the character at `offset`.
@@ -203,7 +187,6 @@ impl BitSet {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::decode::decode;
     use super::*;
 
     fn place(line: u32, column: u32) -> LineCol {
@@ -246,23 +229,6 @@ mod tests {
         assert_eq!(index.offset(place(2, 4)), Some(TextSize::of(text)));
         assert_eq!(index.offset(place(2, 5)), None);
         assert_eq!(index.offset(place(3, 1)), None);
-    }
-
-    #[test]
-    fn original_offsets() {
-        #[track_caller]
-        fn check(bytes: &[u8], forced: Option<Encoding>, expected: Option<u64>) {
-            let source = decode(bytes, forced);
-            let at = TextSize::of(source.text.split('!').next().unwrap());
-            assert_eq!(LineIndex::new(&source.text).original_offset(at, &source), expected);
-        }
-        check(b"\xe9\xe9\x80!", None, Some(3));
-        check(b"\x82\xc4!", Some(Encoding::Ibm437), Some(2));
-        check("éé!".as_bytes(), None, Some(4));
-        check(b"\xef\xbb\xbf\xc3\xa9!", None, Some(5));
-        check(b"\xff\xfe\x3d\xd8\x00\xdeA\0!\0", None, Some(8));
-        check(b"\xef\xbb\xbf\xe9!", None, None);
-        check(b"\xe9\x81!", None, Some(2));
     }
 
     #[test]

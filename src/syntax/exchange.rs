@@ -9,6 +9,7 @@ use SyntaxKind::{
 };
 use logos::{Lexer, Logos};
 
+use super::parser::Tokens;
 use super::{AstNode, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,15 +98,7 @@ fn unclosed_length(text: &str) -> usize {
 }
 
 fn lex(text: &str) -> Vec<Token> {
-    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4 + 1);
-    let mut push = |kind: SyntaxKind, len: usize| {
-        // Units are below 4 GiB: the source layer reads no larger file.
-        let len = u32::try_from(len).unwrap_or(u32::MAX);
-        match tokens.last_mut() {
-            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
-            _ => tokens.push(Token { kind, len }),
-        }
-    };
+    let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut offset = 0;
     // A value without closing quote is cut back, after which the lexer goes on inside its token.
     while offset < text.len() {
@@ -116,14 +109,14 @@ fn lex(text: &str) -> Vec<Token> {
             offset = start + lexer.span().end;
             let is_open = lexeme == Ok(Lexeme::CharString) && (slice.len() < 2 || !slice.ends_with('\''));
             let len = if is_open { unclosed_length(slice) } else { slice.len() };
-            push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), len);
+            tokens.push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), len);
             if len < slice.len() {
                 offset -= slice.len() - len;
                 break;
             }
         }
     }
-    tokens
+    tokens.finish()
 }
 
 /// Parses the text around programs. Total and linear for every text; nothing in it is an error.
@@ -360,25 +353,6 @@ impl<'t> Block<'t> {
     pub fn is_called(self, name: &str) -> bool {
         self.mark().is_some_and(|it| it.text().trim_matches(['[', ']']).trim().eq_ignore_ascii_case(name))
     }
-
-    pub fn value(self, key: &str) -> Option<String> {
-        value(self.0, key)
-    }
-}
-
-/// Value of the first `key` among the children of a block or a root, in any case: the text behind the `=` without
-/// quotes, comments and blanks around it. `None` if the key is not there, empty if it has no value.
-pub fn value(parent: SyntaxNode<'_>, key: &str) -> Option<String> {
-    let is_key = |it: &SyntaxNode<'_>| {
-        let mut words = it.tokens().filter(|it| it.kind() == Ident);
-        it.kind() == KeyValue && words.next().is_some_and(|it| it.text().eq_ignore_ascii_case(key))
-    };
-    let pair = parent.children().find(is_key)?;
-    let behind = pair.tokens().skip_while(|it| it.kind() != Eq).skip(1);
-    let text: String = behind.filter(|it| it.kind() != Comment).map(SyntaxToken::text).collect();
-    let trimmed = text.trim();
-    let inner = trimmed.strip_prefix('\'').map_or(trimmed, |it| it.strip_suffix('\'').unwrap_or(it));
-    Some(inner.trim().to_owned())
 }
 
 #[cfg(test)]
@@ -390,6 +364,21 @@ mod tests {
         NAME = 'Peinture\nVERSION='1.0'\n[VENDOR]\n{any} 12 ; content\n[SOURCE_UNIT]\nSU_TYPE = PROG NAME = 'MAST_SR1 \
         LANGUAGE = IL BODY =\n  ADDRESS = MAST SR1\nPROGRAM MAST'SR1'\n";
 
+    /// Value of the first `key` among the children of a block or a root, in any case: the text behind the `=` without
+    /// quotes, comments and blanks around it. `None` if the key is not there, empty if it has no value.
+    fn value(parent: SyntaxNode<'_>, key: &str) -> Option<String> {
+        let is_key = |it: &SyntaxNode<'_>| {
+            let mut words = it.tokens().filter(|it| it.kind() == Ident);
+            it.kind() == KeyValue && words.next().is_some_and(|it| it.text().eq_ignore_ascii_case(key))
+        };
+        let pair = parent.children().find(is_key)?;
+        let behind = pair.tokens().skip_while(|it| it.kind() != Eq).skip(1);
+        let text: String = behind.filter(|it| it.kind() != Comment).map(SyntaxToken::text).collect();
+        let trimmed = text.trim();
+        let inner = trimmed.strip_prefix('\'').map_or(trimmed, |it| it.strip_suffix('\'').unwrap_or(it));
+        Some(inner.trim().to_owned())
+    }
+
     #[test]
     fn keys_and_values() {
         let parse = parse(MODULE);
@@ -398,18 +387,18 @@ mod tests {
         assert_eq!(blocks.len(), 4);
         let [header, application, vendor, unit] = &blocks[..] else { panic!("four blocks") };
         assert!(header.is_called("header") && unit.is_called("SOURCE_UNIT"));
-        assert_eq!(header.value("DATE").as_deref(), Some("date#2024-03-01"));
-        assert_eq!(header.value("standard").as_deref(), Some("IEC"));
-        assert_eq!(header.value("SENDER").as_deref(), Some("x"));
-        assert_eq!(application.value("NAME").as_deref(), Some("Peinture"));
-        assert_eq!(application.value("VERSION").as_deref(), Some("1.0"));
-        assert_eq!(vendor.value("content"), None);
-        assert_eq!(unit.value("SU_TYPE").as_deref(), Some("PROG"));
-        assert_eq!(unit.value("NAME").as_deref(), Some("MAST_SR1"));
-        assert_eq!(unit.value("LANGUAGE").as_deref(), Some("IL"));
-        assert_eq!(unit.value("BODY").as_deref(), Some(""));
-        assert_eq!(unit.value("ADDRESS").as_deref(), Some("MAST SR1"));
-        assert_eq!(unit.value("PROG_LANGAGE"), None);
+        assert_eq!(value(header.0, "DATE").as_deref(), Some("date#2024-03-01"));
+        assert_eq!(value(header.0, "standard").as_deref(), Some("IEC"));
+        assert_eq!(value(header.0, "SENDER").as_deref(), Some("x"));
+        assert_eq!(value(application.0, "NAME").as_deref(), Some("Peinture"));
+        assert_eq!(value(application.0, "VERSION").as_deref(), Some("1.0"));
+        assert_eq!(value(vendor.0, "content"), None);
+        assert_eq!(value(unit.0, "SU_TYPE").as_deref(), Some("PROG"));
+        assert_eq!(value(unit.0, "NAME").as_deref(), Some("MAST_SR1"));
+        assert_eq!(value(unit.0, "LANGUAGE").as_deref(), Some("IL"));
+        assert_eq!(value(unit.0, "BODY").as_deref(), Some(""));
+        assert_eq!(value(unit.0, "ADDRESS").as_deref(), Some("MAST SR1"));
+        assert_eq!(value(unit.0, "PROG_LANGAGE"), None);
     }
 
     #[test]

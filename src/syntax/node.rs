@@ -210,13 +210,6 @@ impl<'t> SyntaxElement<'t> {
         }
     }
 
-    pub fn text_range(self) -> TextRange {
-        match self {
-            Self::Node(it) => it.text_range(),
-            Self::Token(it) => it.text_range(),
-        }
-    }
-
     pub fn into_node(self) -> Option<SyntaxNode<'t>> {
         match self {
             Self::Node(it) => Some(it),

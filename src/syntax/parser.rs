@@ -21,6 +21,31 @@ pub struct Token {
     pub len: u32,
 }
 
+/// The tokens of a text, as a lexer finds them one behind the other.
+#[derive(Debug, Default)]
+pub(super) struct Tokens(Vec<Token>);
+
+impl Tokens {
+    pub(super) fn with_capacity(tokens: usize) -> Self {
+        Self(Vec::with_capacity(tokens))
+    }
+
+    /// Nothing for an empty token; runs of unknown characters become one.
+    #[inline]
+    pub(super) fn push(&mut self, kind: SyntaxKind, len: usize) {
+        // Units are below 4 GiB: the source layer reads no larger file.
+        let Some(len) = u32::try_from(len).ok().filter(|&it| it > 0) else { return };
+        match self.0.last_mut() {
+            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
+            _ => self.0.push(Token { kind, len }),
+        }
+    }
+
+    pub(super) fn finish(self) -> Vec<Token> {
+        self.0
+    }
+}
+
 /// How many spaces stand between here and something visible in ASCII on the same line. Spaces are a third of all tokens,
 /// and no affair of a lexer's state machine; other blanks are.
 pub(super) fn spaces(rest: &str) -> usize {

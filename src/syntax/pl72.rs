@@ -5,6 +5,7 @@
 
 use logos::{Lexer, Logos};
 
+use super::parser::Tokens;
 use super::{SyntaxKind, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -193,17 +194,12 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 
 /// The tokens of the content of a block. Their lengths add up to the text, for every text.
 pub(super) fn lex(text: &str) -> Vec<Token> {
-    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4 + 1);
+    let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut lexer = Lexeme::lexer(text);
     while let Some(lexeme) = lexer.next() {
-        let kind = lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from);
-        let len = u32::try_from(lexer.slice().len()).unwrap_or(u32::MAX);
-        match tokens.last_mut() {
-            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
-            _ => tokens.push(Token { kind, len }),
-        }
+        tokens.push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), lexer.slice().len());
     }
-    tokens
+    tokens.finish()
 }
 
 #[cfg(test)]

@@ -14,7 +14,8 @@
 use super::SyntaxKind::{
     Address, Comma, Error, FreeText, Ident, Newline, ObjectRef, TypeRef, VarDecl, VarName, Whitespace,
 };
-use super::{Parse, Parser, SyntaxKind, Token};
+use super::parser::Tokens;
+use super::{Parse, Parser, SyntaxKind};
 
 /// Parses one table. Total and linear for every text; what is no row is an error node.
 pub fn parse(text: &str) -> Parse {
@@ -61,7 +62,7 @@ impl Form {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Field {
+pub(in crate::syntax) enum Field {
     Name,
     Address,
     Type,
@@ -73,8 +74,8 @@ const FIELDS: [Field; 4] = [Field::Name, Field::Address, Field::Type, Field::Com
 
 /// Tokens, and what the grammar makes of those that are no trivia.
 #[derive(Default)]
-struct Rows {
-    tokens: Vec<Token>,
+pub(in crate::syntax) struct Rows {
+    tokens: Tokens,
     steps: Vec<Step>,
     /// Fields of the row that is open: where its steps start, whether it has a name, an address.
     open: Option<(usize, bool, bool)>,
@@ -90,23 +91,22 @@ enum Step {
 }
 
 impl Rows {
-    fn push(&mut self, kind: SyntaxKind, len: usize) {
-        // Units are below 4 GiB: the source layer reads no larger file.
-        let Some(len) = u32::try_from(len).ok().filter(|&it| it > 0) else { return };
-        self.tokens.push(Token { kind, len });
-        if !kind.is_trivia() {
+    /// A token outside of the fields. Those of unknown characters are parted by line ends.
+    pub(in crate::syntax) fn push(&mut self, kind: SyntaxKind, len: usize) {
+        self.tokens.push(kind, len);
+        if len > 0 && !kind.is_trivia() {
             self.steps.push(Step::Token);
         }
     }
 
-    fn open(&mut self) {
+    pub(in crate::syntax) fn open(&mut self) {
         self.close();
         self.open = Some((self.steps.len(), false, false));
         self.steps.push(Step::Open);
     }
 
     /// A field with the blanks around it.
-    fn field(&mut self, field: Field, text: &str) {
+    pub(in crate::syntax) fn field(&mut self, field: Field, text: &str) {
         let value = text.trim();
         let start = text.len() - text.trim_start().len();
         self.push(Whitespace, start);
@@ -129,7 +129,7 @@ impl Rows {
         self.push(Whitespace, text.len() - start - value.len());
     }
 
-    fn close(&mut self) {
+    pub(in crate::syntax) fn close(&mut self) {
         let Some((start, name, address)) = self.open.take() else { return };
         let (kind, lacks) = match (name, address) {
             (true, true) => (Some(VarDecl), None),
@@ -160,9 +160,10 @@ impl Rows {
         self.push(Whitespace, line.len() - start - line.trim().len());
     }
 
-    fn parse(mut self, text: &str) -> Parse {
+    pub(in crate::syntax) fn parse(mut self, text: &str) -> Parse {
         self.close();
-        let mut p = Parser::new(text, &self.tokens);
+        let tokens = self.tokens.finish();
+        let mut p = Parser::new(text, &tokens);
         let mut row = None;
         for step in &self.steps {
             match *step {

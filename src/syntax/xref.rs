@@ -4,6 +4,7 @@
 use super::SyntaxKind::{
     Error, FreeText, Heading, Ident, Newline, ObjectRef, Unknown, Whitespace, XrefEntry, XrefPlace,
 };
+use super::parser::Tokens;
 use super::{Parse, Parser, SyntaxKind, Token};
 
 /// Ways in which an entry may use its object: reads, writes, executes, writes by a function, reads and writes by one.
@@ -37,13 +38,8 @@ pub fn parse(text: &str) -> Parse {
 
 /// Of each line: a heading or place as one token, or an object (of any form) and the word behind it.
 fn lex(text: &str) -> Vec<Token> {
-    let mut tokens = Vec::new();
-    let mut push = |kind: SyntaxKind, text: &str| {
-        // Units are below 4 GiB: the source layer reads no larger file.
-        if let Some(len) = u32::try_from(text.len()).ok().filter(|&it| it > 0) {
-            tokens.push(Token { kind, len });
-        }
-    };
+    let mut tokens = Tokens::default();
+    let mut push = |kind: SyntaxKind, text: &str| tokens.push(kind, text.len());
     for line in text.split_inclusive('\n') {
         let code = line.trim_end();
         let (line, end) = line.split_at(line.trim_end_matches(['\n', '\r']).len());
@@ -65,7 +61,7 @@ fn lex(text: &str) -> Vec<Token> {
         push(Whitespace, behind);
         push(Newline, end);
     }
-    tokens
+    tokens.finish()
 }
 
 #[cfg(test)]

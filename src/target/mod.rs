@@ -529,19 +529,6 @@ impl Target {
     pub fn retentive_bytes(&self) -> Option<Range> {
         self.cpu()?.retentive_bytes
     }
-
-    /// How many function blocks of a PL7 symbol (`TM`, `C`, `MN`, `R`, `DR`, `T`) or a PL7-2 symbol (`T`, `C`, `M`, `R`, `D`,
-    /// `FC`, `TXT`) the controller has, the most that any has if it is unknown. `None` for another symbol or family.
-    pub fn block_count(&self, symbol: &str) -> Option<Limit> {
-        if let Some(model) = self.pl72() {
-            return model.block_count(symbol);
-        }
-        if self.family != Family::Pl7 {
-            return None;
-        }
-        let what = pl7::BLOCK_COUNTS.iter().find(|it| it.symbol == symbol)?.what;
-        self.processor().map_or_else(|| pl7::largest_count(what), |it| it.count(what))
-    }
 }
 
 #[cfg(test)]
@@ -585,9 +572,7 @@ mod tests {
         assert_eq!((any.call_depth(), any.stack_depth(), any.label_length()), (None, None, None));
         assert_eq!(any.label_numbers().map(|it| (it.contains(0), it.contains(1))), Some((false, true)));
         assert_eq!(any.watchdog_ms(), Some(Limit::new(150, "PL72:477")));
-        assert_eq!(any.block_count("T").map(|it| it.value), Some(32));
-        assert_eq!(target("TSX 27").block_count("T"), Some(Limit::new(16, "PL72:651-653")));
-        assert_eq!((any.block_count("TM"), any.retentive_bytes(), any.processor()), (None, None, None));
+        assert_eq!((any.retentive_bytes(), any.processor()), (None, None));
     }
 
     #[test]
@@ -629,15 +614,14 @@ mod tests {
 
     #[test]
     fn function_blocks_of_a_controller() {
-        let micro = target("TSX 37-22");
-        let premium = target("TSX 57-353");
         let counts = |target: Target| {
-            ["TM", "C", "MN", "R", "DR", "T"].map(|it| target.block_count(it).map(|it| it.value)).map(Option::unwrap)
+            pl7::BLOCK_COUNTS.iter().map(|it| (it.symbol, target.count(it.what).map(|it| it.value))).collect::<Vec<_>>()
         };
-        assert_eq!(counts(micro), [64, 32, 8, 4, 8, 64]);
-        assert_eq!(counts(premium), [255; 6]);
-        assert_eq!(counts(Target::any(Family::Pl7)), [255; 6]);
-        assert_eq!((micro.block_count("X"), target("CPU 314").block_count("T")), (None, None));
+        let of_micro = [("TM", 64), ("C", 32), ("MN", 8), ("R", 4), ("DR", 8), ("T", 64)];
+        assert_eq!(counts(target("TSX 37-22")), of_micro.map(|(symbol, count)| (symbol, Some(count))));
+        for target in [target("TSX 57-353"), Target::any(Family::Pl7)] {
+            assert!(counts(target).iter().all(|it| it.1 == Some(255)));
+        }
     }
 
     #[test]

@@ -20,7 +20,6 @@ use crate::model::UnitModel;
 use crate::model::entity::Family;
 use crate::model::expr::{Comparison, Expr, ExprId, Exprs, ObjectId};
 use crate::model::object::{Class, Object, Type};
-use crate::syntax::Language;
 use crate::target::pl7::STEP_TIMES;
 
 /// Expressions, and the objects that they are about.
@@ -106,12 +105,8 @@ struct Question<'q> {
 impl<'a> Space<'a> {
     /// The conditions of one unit.
     pub fn of(model: &'a UnitModel) -> Self {
-        let family = match model.language {
-            Language::Awl(_) => Family::Step7,
-            Language::Step5(_) | Language::Step5Symbols => Family::Step5,
-            language if language.is_pl7_2() => Family::Pl72,
-            _ => Family::Pl7,
-        };
+        // An exchange file has no conditions between its programs.
+        let family = Family::of(model.language).unwrap_or(Family::Pl7);
         Self { exprs: &model.exprs, objects: Objects::Unit(&model.objects), family, known: &[] }
     }
 

@@ -1,7 +1,7 @@
 //! Questions of many atoms: a SAT solver finds values of the atoms, which are then explained by values of the objects. What
 //! no values explain is a clause more, and the solver goes on.
 
-use batsat::{BasicSolver, Lit, SolverInterface as _, Var, lbool};
+use batsat::{Callbacks, ClauseKind, Lit, Solver, SolverInterface as _, SolverOpts, Var, lbool};
 
 use super::problem::{Gate, Problem};
 use super::{Answer, Question};
@@ -9,14 +9,30 @@ use super::{Answer, Question};
 /// So many candidates of the solver are refuted before the question is given up.
 const MAX_ROUNDS: usize = 1000;
 
+/// The dead ends of the solver on its way through a question, and so many are the most: what somebody meant has few.
+#[derive(Default)]
+struct Effort(u32);
+
+const MAX_DEAD_ENDS: u32 = 20_000;
+
+impl Callbacks for Effort {
+    fn on_new_clause(&mut self, _: &[Lit], _: ClauseKind) {
+        self.0 = self.0.saturating_add(1);
+    }
+
+    fn stop(&self) -> bool {
+        self.0 > MAX_DEAD_ENDS
+    }
+}
+
 impl Problem<'_, '_> {
     pub(super) fn solve(&self, question: &Question<'_>) -> Answer {
-        let mut solver = BasicSolver::default();
+        let mut solver = Solver::new(SolverOpts::default(), Effort::default());
         let vars: Vec<Var> = self.gates.iter().map(|_| solver.new_var_default()).collect();
         let lit = |node: usize, value: bool| Lit::new(vars[node], value);
         let of_atom = |atom: usize, value: bool| lit(self.atoms[atom].0, value);
         let mut clause = Vec::new();
-        let mut add = |solver: &mut BasicSolver, lits: &[Lit]| {
+        let mut add = |solver: &mut Solver<Effort>, lits: &[Lit]| {
             clause.clear();
             clause.extend_from_slice(lits);
             solver.add_clause_reuse(&mut clause);

@@ -371,3 +371,26 @@ fn implied_and_equivalent_conditions() {
     assert_eq!(space.constant(over_nine, over_five), Some(true));
     assert_eq!(space.constant(Exprs::FALSE, a), Some(false));
 }
+
+/// Eleven things in ten places, no two in one: a solver that goes by clauses takes longer for each than for all before it.
+#[test]
+fn what_takes_for_ever_is_not_decided() {
+    const PLACES: usize = 10;
+    let objects: Vec<Object> = (0..PLACES * (PLACES + 1)).map(|it| pl7::parse(&format!("%M{it}")).unwrap()).collect();
+    let mut exprs = Exprs::default();
+    let read = |exprs: &mut Exprs, thing: usize, place: usize| {
+        exprs.read(ObjectId(u32::try_from(thing * PLACES + place).unwrap()), 0)
+    };
+    let mut wanted: Vec<ExprId> = Vec::new();
+    for thing in 0..=PLACES {
+        let places: Vec<ExprId> = (0..PLACES).map(|place| read(&mut exprs, thing, place)).collect();
+        wanted.push(places.into_iter().reduce(|a, b| exprs.or(a, b)).unwrap());
+        for (other, place) in (0..thing).flat_map(|other| (0..PLACES).map(move |place| (other, place))) {
+            let (a, b) = (read(&mut exprs, thing, place), read(&mut exprs, other, place));
+            let both = exprs.and(a, b);
+            wanted.push(exprs.not(both));
+        }
+    }
+    let space = Space { exprs: &exprs, objects: Objects::Unit(&objects), family: Family::Pl7, known: &[] };
+    assert_eq!(space.together(&wanted), Verdict::NotDecided);
+}

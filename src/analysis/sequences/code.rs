@@ -53,6 +53,11 @@ pub enum How {
 }
 
 impl CodeFacts {
+    /// How much there is to do when it runs.
+    pub fn size(&self) -> usize {
+        self.acts.len() + self.pool.len()
+    }
+
     pub fn new(model: &UnitModel) -> Option<Box<Self>> {
         if !matches!(model.entity, Entity::Block { .. } | Entity::Listing) || model.statements.is_empty() {
             return None;
@@ -96,9 +101,8 @@ impl CodeFacts {
                 StatementKind::Drive { access, pin: Pin::Start, when, .. } => {
                     model.accesses.get(access as usize).map(|it| Drawn::Start(it.object.0, path, when))
                 }
-                StatementKind::Jump(jump) => model.jumps.get(jump as usize).map(|it| Drawn::Test(it.when)),
-                StatementKind::Return { when, .. } => Some(Drawn::Test(when)),
-                StatementKind::Call(call) => model.calls.get(call as usize).map(|it| Drawn::Call(call, path, it.when)),
+                StatementKind::Jump(_) | StatementKind::Return { .. } => model.condition(statement).map(Drawn::Test),
+                StatementKind::Call(call) => model.condition(statement).map(|it| Drawn::Call(call, path, it)),
                 _ => None,
             };
             acts.extend(act.filter(|it| !matches!(it, Drawn::Test(Exprs::TRUE))));

@@ -186,7 +186,7 @@ impl<'a> Sequence<'a> {
             !matches!(it.object.class, Class::Memory | Class::Symbol)
                 || program.writes_indirectly(&it.object.footprint.area)
         };
-        let has_gaps = !program.complete || program.partial || steps.iter().any(is_hidden);
+        let has_gaps = !program.complete || program.partial || trace.is_cut || steps.iter().any(is_hidden);
         let objects = trace.objects.clone();
         Self {
             steps,

@@ -117,6 +117,8 @@ pub fn find(trace: &mut Trace<'_>) -> Vec<Found> {
         of.dedup();
         of.into_iter().for_each(|it| firings_of[it].push(at));
     }
+    // By the firing that sets.
+    apart.sort_unstable();
     let mut found: Vec<Found> = Vec::new();
     for (at, steps) in components.into_iter().enumerate() {
         if is_sequence(steps.len(), &handed_in[at]) {
@@ -325,7 +327,7 @@ fn is_sequence(bits: usize, handed: &[(ObjectId, ObjectId)]) -> bool {
 struct Builder<'t, 'a> {
     trace: &'t mut Trace<'a>,
     firings: &'t [Firing],
-    /// Resets under another condition than the set: see [`by_successor`] and [`by_common_reset`].
+    /// Resets under another condition than the set, sorted: see [`by_successor`] and [`by_common_reset`].
     apart: &'t [(usize, usize, ObjectId)],
     steps: Vec<ObjectId>,
     places: FxHashMap<ObjectId, usize>,
@@ -368,7 +370,7 @@ impl<'t, 'a> Builder<'t, 'a> {
             let resets = self.own(&firing.resets);
             let mut resets: Vec<(usize, usize)> = resets.into_iter().filter(|it| asks.contains(&it.0)).collect();
             if resets.is_empty() {
-                resets = self.elsewhere(at, &asks, &resets_alone, &mut used);
+                resets = self.elsewhere(at, &asks, &mut used);
             }
             found.transitions.push(self.transition(firing, &asks, sets, resets));
         }
@@ -399,21 +401,14 @@ impl<'t, 'a> Builder<'t, 'a> {
     }
 
     /// Resets of the steps that a firing asks for which stand under other conditions.
-    fn elsewhere(
-        &self,
-        firing: usize,
-        asks: &[usize],
-        resets: &[usize],
-        used: &mut FxHashSet<usize>,
-    ) -> Vec<(usize, usize)> {
+    fn elsewhere(&self, firing: usize, asks: &[usize], used: &mut FxHashSet<usize>) -> Vec<(usize, usize)> {
         let mut found: Vec<(usize, usize)> = Vec::new();
-        for &at in resets {
-            for it in self.own(&self.firings[at].resets) {
-                let is_new = asks.contains(&it.0) && !found.iter().any(|known| known.0 == it.0);
-                if is_new && self.apart.contains(&(firing, at, self.steps[it.0])) {
-                    found.push(it);
-                    used.insert(at);
-                }
+        let first = self.apart.partition_point(|it| it.0 < firing);
+        for &(_, reset, bit) in self.apart.iter().skip(first).take_while(|it| it.0 == firing) {
+            let (Some(step), Some(event)) = (self.step(bit), self.firings[reset].reset_of(bit)) else { continue };
+            if asks.contains(&step) && !found.iter().any(|known| known.0 == step) {
+                found.push((step, event));
+                used.insert(reset);
             }
         }
         found

@@ -96,14 +96,14 @@ fn word(trace: &Trace<'_>, value: ExprId) -> Option<ObjectId> {
 /// The word whose complement a value is.
 fn complement(trace: &Trace<'_>, value: ExprId) -> Option<ObjectId> {
     let Expr::Binary(Operator::Xor, a, b) = *trace.exprs.get(value) else { return None };
-    let is_all = |it: ExprId| matches!(trace.exprs.get(it), Expr::Int(-1 | 0xFF | 0xFFFF | 0xFFFF_FFFF));
-    if is_all(b) {
-        word(trace, a)
-    } else if is_all(a) {
-        word(trace, b)
-    } else {
-        None
-    }
+    [(a, b), (b, a)].into_iter().find_map(|(of, mask)| {
+        let Expr::Int(mask) = *trace.exprs.get(mask) else { return None };
+        let of = word(trace, of)?;
+        // The table of a document has room for more bits than an operation takes.
+        let bits = Some(trace.object(of).footprint.bits).filter(|it| *it <= 32).unwrap_or(16);
+        let all = (1_i64 << bits) - 1;
+        (mask & all == all).then_some(of)
+    })
 }
 
 fn operands(trace: &Trace<'_>, value: ExprId, wanted: Operator) -> Option<[(ExprId, ExprId); 2]> {

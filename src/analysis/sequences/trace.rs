@@ -27,8 +27,6 @@ pub struct Event {
     pub when: ExprId,
     /// What is assigned or stored, where it is understood.
     pub value: Option<ExprId>,
-    /// Version that it makes.
-    pub version: u32,
     pub site: Site,
     /// Network of its unit.
     pub network: u32,
@@ -45,6 +43,8 @@ pub struct Trace<'a> {
     /// In the order of execution.
     pub events: Vec<Event>,
     pub family: Family,
+    /// Some calls were not followed: too deep, in a circle, or too many.
+    pub is_cut: bool,
     /// Value of each version but the first of a bit.
     values: FxHashMap<(ObjectId, u32), ExprId>,
     /// Versions at the end of the scan.
@@ -110,7 +110,7 @@ impl<'a> Trace<'a> {
         // The cyclic program before what interrupts it, each in its order.
         let is_interrupt = |it: u32| !program.contexts[it as usize].contains(&Context::Cyclic);
         units.sort_by_key(|&it| (is_interrupt(it), program.order[it as usize]));
-        let total: usize = program.units.iter().filter_map(|it| it.code.as_ref()).map(|it| it.acts.len()).sum();
+        let total: usize = program.units.iter().filter_map(|it| it.code.as_ref()).map(|it| it.size()).sum();
         let mut first_call = Vec::with_capacity(program.units.len());
         let mut next = 0;
         for unit in &program.units {
@@ -124,6 +124,7 @@ impl<'a> Trace<'a> {
             objects: Vec::new(),
             events: Vec::new(),
             family: program.family,
+            is_cut: false,
             values: FxHashMap::default(),
             last: Vec::new(),
             started: FxHashMap::default(),
@@ -141,7 +142,7 @@ impl<'a> Trace<'a> {
             words: FxHashMap::default(),
             first_call,
             stack: Vec::new(),
-            budget: total.saturating_mul(4).saturating_add(20_000),
+            budget: total.saturating_mul(4).saturating_add(100_000),
             root: 0,
         };
         for unit in units {
@@ -206,11 +207,6 @@ impl<'a> Trace<'a> {
     /// Value of a bit at the start of the scan.
     pub fn start(&mut self, object: ObjectId) -> ExprId {
         self.exprs.read(object, 0)
-    }
-
-    /// What a version of a bit is worth, as the program says it.
-    pub fn value(&self, object: ObjectId, version: u32) -> Option<ExprId> {
-        self.values.get(&(object, version)).copied()
     }
 
     /// Under which condition a timer was started whose state is read.
@@ -369,11 +365,10 @@ impl<'a> Runner<'_, 'a> {
     }
 
     /// A bit takes a value when control passes here.
-    fn give(&mut self, object: ObjectId, value: ExprId, path: ExprId) -> u32 {
+    fn give(&mut self, object: ObjectId, value: ExprId, path: ExprId) {
         let before = self.read(object, path);
         let version = self.bump(object);
         self.give_version(object, version, before, value, path);
-        version
     }
 
     fn give_version(&mut self, object: ObjectId, version: u32, before: ExprId, value: ExprId, path: ExprId) {
@@ -393,10 +388,11 @@ impl<'a> Runner<'_, 'a> {
         let program = self.program;
         let facts = program.units[unit as usize];
         let Some(code) = facts.code.as_deref() else { return };
-        if self.stack.len() >= DEEPEST || self.stack.contains(&unit) || self.budget < code.acts.len() {
+        if self.stack.len() >= DEEPEST || self.stack.contains(&unit) || self.budget < code.size() {
+            self.trace.is_cut = true;
             return;
         }
-        self.budget -= code.acts.len();
+        self.budget -= code.size();
         self.stack.push(unit);
         let scope = self.table.scope(unit, instance);
         let mut sites: FxHashMap<ObjectId, Site> = FxHashMap::default();
@@ -534,7 +530,7 @@ impl<'a> Runner<'_, 'a> {
         network: u32,
     ) {
         let (mut when, mut given) = (path, value);
-        let version = match (how, value) {
+        match (how, value) {
             (How::Set | How::Reset, Some(condition)) => {
                 when = self.trace.exprs.and(path, condition);
                 given = None;
@@ -549,7 +545,6 @@ impl<'a> Runner<'_, 'a> {
                 };
                 self.trace.values.insert((object, version), made);
                 self.assigned.remove(&object);
-                version
             }
             (How::Assign, Some(value)) => {
                 // The value of another bit, kept for the next scan.
@@ -559,7 +554,7 @@ impl<'a> Runner<'_, 'a> {
                 {
                     self.trace.memories.insert(object, value);
                 }
-                self.give(object, value, path)
+                self.give(object, value, path);
             }
             _ => {
                 let version = self.bump(object);
@@ -568,11 +563,10 @@ impl<'a> Runner<'_, 'a> {
                     self.words.insert((object, version), value);
                 }
                 self.store_bits(object, value, path);
-                version
             }
-        };
+        }
         let root = self.root;
-        self.trace.events.push(Event { how, object, when, value: given, version, site, network, unit, root });
+        self.trace.events.push(Event { how, object, when, value: given, site, network, unit, root });
     }
 
     /// The bits of a word take theirs.

@@ -11,7 +11,6 @@ mod ladder;
 mod pl7;
 mod pl72;
 mod st;
-mod step5_symbols;
 mod symbol_table;
 mod width;
 mod work;
@@ -30,8 +29,7 @@ pub fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: Languag
         Language::Pl7Il => il::lower(root, text, entity),
         Language::Pl7St => st::lower(root, text, entity),
         Language::Exchange => exchange::lower(root, text, entity),
-        Language::SymbolTable => symbol_table::lower(root, entity),
-        Language::Step5Symbols => step5_symbols::lower(root, entity),
+        Language::SymbolTable | Language::Step5Symbols => symbol_table::lower(root, entity, language),
         Language::Pl7Xref => xref::lower(root, entity),
         Language::Pl7Ld | Language::Pl72Ld => ladder::lower(root, text, entity, language),
         Language::Pl7Gr7 | Language::Sfc | Language::Pl72Gr7 | Language::Pl72Sfc => {

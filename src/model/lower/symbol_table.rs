@@ -1,4 +1,4 @@
-//! A symbol table of STEP 7: the names that a program gives to its addresses and blocks.
+//! Symbol tables of STEP 7 and STEP 5: the names that a program gives to its addresses and blocks.
 
 use rowan::TextRange;
 use smol_str::SmolStr;
@@ -6,35 +6,24 @@ use smol_str::SmolStr;
 use super::builder::Builder;
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
-use crate::model::object::step7;
+use crate::model::object::{Object, step5, step7};
 use crate::model::symbols::Symbol;
 use crate::model::unit::OddityKind;
 use crate::syntax::{Language, SyntaxKind, SyntaxNode};
 
-pub(super) fn lower(root: SyntaxNode<'_>, entity: Entity) -> UnitModel {
-    let mut b = Builder::new(entity, Language::SymbolTable, TextRange::default(), root.text_range().len());
+pub(super) fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitModel {
+    let mut b = Builder::new(entity, language, TextRange::default(), root.text_range().len());
     for row in root.children().filter(|it| it.kind() == SyntaxKind::VarDecl) {
-        declaration(&mut b, row);
+        declaration(&mut b, row, language);
     }
     b.finish()
 }
 
-fn declaration(b: &mut Builder, row: SyntaxNode<'_>) {
+fn declaration(b: &mut Builder, row: SyntaxNode<'_>, language: Language) {
     let child = |kind| row.children().find(|it| it.kind() == kind);
     let joined = |it: SyntaxNode<'_>| SmolStr::from(it.text().split_whitespace().collect::<String>());
     let Some(name) = child(SyntaxKind::VarName) else { return };
-    let object = child(SyntaxKind::ObjectRef).and_then(|it| {
-        let address = joined(it);
-        match step7::parse_either(&address) {
-            Ok(object) => Some(object),
-            // A table of variables is no part of the program.
-            Err(_) if is_variable_table(&address) => None,
-            Err(error) => {
-                b.oddity(OddityKind::Address(error), it.text_range(), address);
-                None
-            }
-        }
-    });
+    let object = child(SyntaxKind::ObjectRef).and_then(|it| address(b, language, &joined(it), it.text_range()));
     let comment = row.tokens().find(|it| it.kind() == SyntaxKind::FreeText);
     let symbol = Symbol {
         name: name.text().trim().into(),
@@ -47,6 +36,23 @@ fn declaration(b: &mut Builder, row: SyntaxNode<'_>) {
     b.model.symbols.push(symbol);
 }
 
+/// What an address without blanks names.
+fn address(b: &mut Builder, language: Language, address: &SmolStr, place: TextRange) -> Option<Object> {
+    let error = match language {
+        // The form of these tables is assumed: what cannot be read in them is no mistake of theirs.
+        Language::Step5Symbols => return step5::parse_any(address).ok(),
+        _ => match step7::parse_either(address) {
+            Ok(object) => return Some(object),
+            Err(error) => error,
+        },
+    };
+    // A table of variables is no part of the program.
+    if !is_variable_table(address) {
+        b.oddity(OddityKind::Address(error), place, address.clone());
+    }
+    None
+}
+
 /// `VAT1`
 fn is_variable_table(address: &str) -> bool {
     let (letters, number) = address.split_at_checked(3).unwrap_or_default();
@@ -56,8 +62,11 @@ fn is_variable_table(address: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::object::Class;
-    use crate::syntax::symbol_table;
+    use crate::analysis::facts::UnitFacts;
+    use crate::analysis::symbols::{SymbolTable, resolve};
+    use crate::model::entity::Family;
+    use crate::model::object::{Area, Class};
+    use crate::syntax::{Mnemonics, symbol_table};
 
     #[test]
     fn addresses_of_both_sets_and_blocks() {
@@ -66,7 +75,7 @@ mod tests {
                     \"d\",\"C 2\",\"COUNTER\",\"\"\n\"e\",\"M 1.9\",\"BOOL\",\"\"\n\"f\",\"MX 3\",\"BOOL\",\"\"\n";
         let parse = symbol_table::parse(text);
         assert_eq!(parse.errors(), []);
-        let model = lower(parse.syntax(), Entity::Container);
+        let model = lower(parse.syntax(), Entity::Container, Language::SymbolTable);
         let found: Vec<_> =
             model.symbols.iter().map(|it| (it.name.as_str(), it.object.as_ref().map(|it| it.class))).collect();
         let expected = [
@@ -85,5 +94,26 @@ mod tests {
         assert_eq!(model.symbols[0].comment.as_deref(), Some("x"));
         let wrong: Vec<&str> = model.oddities.iter().map(|it| it.text.as_str()).collect();
         assert_eq!(wrong, ["M1.9", "MX3"]);
+    }
+
+    #[test]
+    fn symbols_are_the_operands_that_they_name() {
+        let facts = |text: &str, language: Language| {
+            let parse = crate::syntax::parse(language, text);
+            UnitFacts::new(&crate::model::lower::lower(parse.syntax(), text, Entity::Listing, language))
+        };
+        let table = facts("\tE 0.0\tSTART\tTaster\n\tMW 10\tZAHL\t\n\tF 1.0\tMERKER\t\n", Language::Step5Symbols);
+        let table = SymbolTable::new(Family::Step5, [&table]);
+        let code = facts("U -START\n= -MERKER\nL -Zahl\nT -OTHER\n", Language::Step5(Mnemonics::German));
+        let resolved = resolve(&table, &code);
+        let area = |text: &str| {
+            let found = resolved.objects.iter().find(|it| it.object.text == text);
+            found.map(|it| (it.object.footprint.area.clone(), it.object.footprint.start))
+        };
+        assert_eq!(area("-START"), Some((Area::Inputs, 0)));
+        assert_eq!(area("-MERKER"), Some((Area::Words, 8)));
+        assert_eq!(area("-Zahl"), Some((Area::Words, 80)));
+        assert_eq!(area("-OTHER"), Some((Area::Symbol("other".into()), 0)));
+        assert_eq!(table.annotate("`-START` and `MW10`"), "`-START` (`E0.0`) and `MW10` (`ZAHL`)");
     }
 }

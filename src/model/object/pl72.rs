@@ -61,13 +61,6 @@ pub fn class_of(text: &str) -> Option<Class> {
     read(&text.to_ascii_uppercase()).ok().map(|(place, _)| place.class)
 }
 
-/// The address that a bare name seems to be: `B10` for `%M10`, `T0,D` for `T0.D`. `None` when the name does not look like
-/// one, or already is one.
-pub fn suggest(name: &str) -> Option<String> {
-    let upper = name.to_ascii_uppercase();
-    if read(&upper).is_ok() { None } else { nearest(&upper) }
-}
-
 /// Whether an object is the preset of a function block: `T0,P`.
 pub fn is_preset(object: &Object) -> bool {
     let block = match object.footprint.area {
@@ -1018,9 +1011,7 @@ mod tests {
             assert_eq!(error.kind, AddressErrorKind::Malformed, "{text}: {error:?}");
             assert_eq!(error.suggestion.as_deref(), suggestion, "{text}");
             assert!(!error.message.is_empty() && !error.message.ends_with('.'), "{text}");
-            assert_eq!(suggest(text), error.suggestion, "{text}");
         }
-        assert_eq!((suggest("W5"), suggest("W5(W1)")), (None, None));
     }
 
     #[test]
@@ -1100,7 +1091,6 @@ mod tests {
                 prop_assert!(object.footprint.bits > 0);
                 prop_assert!(object.footprint.end() > object.footprint.start);
                 prop_assert_eq!(object.indexed, index.is_some());
-                prop_assert_eq!(suggest(text), None);
             }
             Err(error) => {
                 prop_assert!(!error.message.is_empty());
@@ -1108,9 +1098,6 @@ mod tests {
                     prop_assert!(parse(&suggestion).is_ok(), "{} -> {}", text, suggestion);
                 }
             }
-        }
-        if let Some(address) = suggest(text) {
-            prop_assert!(parse(&address).is_ok());
         }
         channel(text);
         Ok(())

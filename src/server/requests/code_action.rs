@@ -6,6 +6,7 @@ use lsp_types::{
     CodeAction, CodeActionKind, CodeActionParams, CodeActionRequest, CodeActionResponse, Position, Range, TextEdit,
 };
 use rowan::{TextRange, TextSize};
+use rustc_hash::FxHashSet;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -39,10 +40,14 @@ impl Handle for Handler {
             let range = it.text_range(params.range);
             let touched =
                 findings.iter().filter(|it| it.suppressed.is_none() && touches(it.finding.place.range, range));
+            let mut disabled: FxHashSet<&str> = FxHashSet::default();
             for finding in touched {
+                let rule = finding.finding.rule;
                 actions.extend(fixes(&it, finding));
                 actions.extend(suppress(&it, finding));
-                actions.extend(disable(&it, finding.finding.rule));
+                if disabled.insert(rule.code) {
+                    actions.extend(disable(&it, rule));
+                }
             }
         }
         if wants(only, &CodeActionKind::SourceFixAll) {
@@ -137,8 +142,8 @@ fn comment(it: &InFile<'_>, range: TextRange, text: &str) -> Option<TextEdit> {
     let at = line.start().max(cursor.offset);
     let language = cursor.unit.language(it.db);
     let comment = match language {
-        Language::Awl(_) | Language::Step5(_) => format!("// {text}"),
-        Language::Exchange | Language::Step5Symbols | Language::Pl7Xref => return None,
+        it if it.is_statement_list() => format!("// {text}"),
+        it if it.declares_symbols() || it == Language::Pl7Xref => return None,
         _ => format!("(* {text} *)"),
     };
     let blanks = content.find(|it| it != ' ' && it != '\t').unwrap_or(0);

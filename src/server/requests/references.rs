@@ -1,6 +1,7 @@
 //! `textDocument/references`: the places that use what stands at a position, and what shares memory with it.
 
 use lsp_types::{Location, ReferenceParams, ReferencesRequest};
+use rustc_hash::FxHashSet;
 
 use super::{Answer, Handle};
 use crate::analysis::Site;
@@ -58,13 +59,11 @@ pub(super) fn found(cursor: Option<InUnit<'_>>, with_declarations: bool) -> Vec<
         let declared = definition::places(&cursor, &target, &program, &index, unit);
         found.extend(declared.into_iter().map(|place| Found { place, mode: None }));
     }
+    let mut seen: FxHashSet<FilePlace> = found.iter().map(|it| it.place).collect();
     let mut places = program.places();
     for (site, mode) in uses(&cursor, &target, &index, unit) {
-        if let Some(place) = places.of(site)
-            && !found.iter().any(|it| it.place == place)
-        {
-            found.push(Found { place, mode: Some(mode) });
-        }
+        let place = places.of(site).filter(|it| seen.insert(*it));
+        found.extend(place.map(|place| Found { place, mode: Some(mode) }));
     }
     found
 }

@@ -180,8 +180,8 @@ fn is_free_symbol(it: InFile<'_>, program: Program<'_>, old: &SmolStr, new: &str
 /// The label as the language writes it.
 fn label(new: &str, language: Language, others: &[SmolStr]) -> Result<String, String> {
     let is_taken = |name: &str| others.iter().any(|it| it.eq_ignore_ascii_case(name));
-    if let Language::Awl(_) | Language::Step5(_) = language {
-        let family = if matches!(language, Language::Awl(_)) { Family::Step7 } else { Family::Step5 };
+    let family = Family::of(language).unwrap_or(Family::Pl7);
+    if language.is_statement_list() {
         let limit = Target::any(family).label_length();
         let is_word = |it: char| it.is_ascii_alphanumeric() || it == '_';
         if !new.starts_with(|it: char| it.is_ascii_alphabetic() || it == '_') || !new.chars().all(is_word) {
@@ -198,7 +198,6 @@ fn label(new: &str, language: Language, others: &[SmolStr]) -> Result<String, St
         }
         return Ok(new.to_owned());
     }
-    let family = if language.is_pl7_2() { Family::Pl72 } else { Family::Pl7 };
     let prefix = if language.is_pl7_2() { "L" } else { "%L" };
     let digits = new.trim_start_matches('%').trim_start_matches(['L', 'l']);
     let range = Target::any(family).label_numbers();

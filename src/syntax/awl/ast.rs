@@ -42,56 +42,14 @@ fn unquoted(text: &str) -> &str {
         .map_or(inner, |it| it.trim_matches([' ', '\t', '\u{A0}', '\u{202F}']))
 }
 
-impl<'t> Root<'t> {
-    pub fn blocks(self) -> impl Iterator<Item = Block<'t>> + use<'t> {
-        self.children()
-    }
-
-    pub fn listings(self) -> impl Iterator<Item = Listing<'t>> + use<'t> {
-        self.children()
-    }
-}
-
 impl<'t> Block<'t> {
     pub fn header(self) -> Option<BlockHeader<'t>> {
         self.child()
     }
 
-    pub fn title(self) -> Option<TitleLine<'t>> {
-        self.child()
-    }
-
-    pub fn attributes(self) -> impl Iterator<Item = BlockAttribute<'t>> + use<'t> {
-        self.children()
-    }
-
-    /// The declarations; the `STRUCT` of a data block or type is one of them.
-    pub fn sections(self) -> impl Iterator<Item = VarSection<'t>> + use<'t> {
-        self.children()
-    }
-
     /// Of a data block: the UDT or function block whose data it holds. Of a function: the type of its return value.
     pub fn type_ref(self) -> Option<TypeRef<'t>> {
         self.child().or_else(|| self.header()?.return_type())
-    }
-
-    pub fn data_inits(self) -> impl Iterator<Item = DataInit<'t>> + use<'t> {
-        self.children()
-    }
-
-    pub fn networks(self) -> impl Iterator<Item = Network<'t>> + use<'t> {
-        self.children()
-    }
-}
-
-impl<'t> Listing<'t> {
-    /// `Bloc FC1 :`
-    pub fn header(self) -> Option<BlockHeader<'t>> {
-        self.child()
-    }
-
-    pub fn networks(self) -> impl Iterator<Item = Network<'t>> + use<'t> {
-        self.children()
     }
 }
 
@@ -100,50 +58,8 @@ impl<'t> BlockHeader<'t> {
         self.child_token(SyntaxKind::Ident)
     }
 
-    pub fn name(self) -> Option<BlockName<'t>> {
-        self.child()
-    }
-
     pub fn return_type(self) -> Option<TypeRef<'t>> {
         self.child()
-    }
-}
-
-impl<'t> BlockName<'t> {
-    /// `FC 1`, or a symbol without its quotes.
-    pub fn text(self) -> SmolStr {
-        let mut name = self.significant();
-        match (name.next(), name.next()) {
-            (Some(word), Some(number)) => smol_str::format_smolstr!("{} {}", word.text(), number.text()),
-            (Some(word), None) => unquoted(word.text()).into(),
-            _ => SmolStr::default(),
-        }
-    }
-
-    pub fn is_symbol(self) -> bool {
-        self.child_token(SyntaxKind::QuotedSymbol).is_some()
-    }
-}
-
-impl<'t> TitleLine<'t> {
-    pub fn text(self) -> Option<SyntaxToken<'t>> {
-        self.child_token(SyntaxKind::FreeText)
-    }
-}
-
-impl<'t> BlockAttribute<'t> {
-    /// `AUTHOR`, `KNOW_HOW_PROTECT`; nothing for `{...}`.
-    pub fn keyword(self) -> Option<SyntaxToken<'t>> {
-        self.child_token(SyntaxKind::Ident)
-    }
-
-    pub fn value(self) -> Option<SyntaxToken<'t>> {
-        self.child_token(SyntaxKind::FreeText)
-    }
-
-    /// `{S7_attr := '...'}`
-    pub fn system_attributes(self) -> Option<SyntaxToken<'t>> {
-        self.child_token(SyntaxKind::Attribute)
     }
 }
 
@@ -206,19 +122,6 @@ impl<'t> TypeRef<'t> {
     pub fn text(self) -> String {
         self.0.text().into_owned()
     }
-
-    /// The name of the type, its number and length apart.
-    pub fn token(self) -> Option<SyntaxToken<'t>> {
-        self.significant().next()
-    }
-
-    /// `10` of `STRING [10]`.
-    pub fn length(self) -> Option<SyntaxToken<'t>> {
-        self.significant()
-            .skip_while(|it| it.kind() != SyntaxKind::LBrack)
-            .nth(1)
-            .filter(|it| it.kind() != SyntaxKind::RBrack)
-    }
 }
 
 impl<'t> StructType<'t> {
@@ -270,10 +173,6 @@ impl<'t> InitValue<'t> {
 }
 
 impl<'t> DataInit<'t> {
-    pub fn target(self) -> Option<Operand<'t>> {
-        self.child()
-    }
-
     pub fn value(self) -> Option<InitValue<'t>> {
         self.child()
     }
@@ -284,23 +183,8 @@ impl<'t> Network<'t> {
         self.child()
     }
 
-    pub fn title(self) -> Option<TitleLine<'t>> {
-        self.header()?.child()
-    }
-
     pub fn instrs(self) -> impl Iterator<Item = Instr<'t>> + use<'t> {
         self.children()
-    }
-
-    /// Whether the author left code out of this network (`...`).
-    pub fn is_elided(self) -> bool {
-        self.child_token(SyntaxKind::Elision).is_some()
-    }
-}
-
-impl<'t> NetworkHeader<'t> {
-    pub fn title(self) -> Option<TitleLine<'t>> {
-        self.child()
     }
 }
 
@@ -415,5 +299,126 @@ impl<'t> Arg<'t> {
     /// `None` for a parameter that is left open.
     pub fn value(self) -> Option<Operand<'t>> {
         self.child()
+    }
+}
+
+/// What of the tree the tests alone look at.
+#[cfg(test)]
+mod testing {
+    use super::*;
+
+    impl<'t> Root<'t> {
+        pub fn blocks(self) -> impl Iterator<Item = Block<'t>> + use<'t> {
+            self.children()
+        }
+
+        pub fn listings(self) -> impl Iterator<Item = Listing<'t>> + use<'t> {
+            self.children()
+        }
+    }
+
+    impl<'t> Block<'t> {
+        pub fn title(self) -> Option<TitleLine<'t>> {
+            self.child()
+        }
+
+        pub fn attributes(self) -> impl Iterator<Item = BlockAttribute<'t>> + use<'t> {
+            self.children()
+        }
+
+        /// The declarations; the `STRUCT` of a data block or type is one of them.
+        pub fn sections(self) -> impl Iterator<Item = VarSection<'t>> + use<'t> {
+            self.children()
+        }
+
+        pub fn data_inits(self) -> impl Iterator<Item = DataInit<'t>> + use<'t> {
+            self.children()
+        }
+
+        pub fn networks(self) -> impl Iterator<Item = Network<'t>> + use<'t> {
+            self.children()
+        }
+    }
+
+    impl<'t> Listing<'t> {
+        /// `Bloc FC1 :`
+        pub fn header(self) -> Option<BlockHeader<'t>> {
+            self.child()
+        }
+
+        pub fn networks(self) -> impl Iterator<Item = Network<'t>> + use<'t> {
+            self.children()
+        }
+    }
+
+    impl<'t> BlockHeader<'t> {
+        pub fn name(self) -> Option<BlockName<'t>> {
+            self.child()
+        }
+    }
+
+    impl<'t> BlockName<'t> {
+        /// `FC 1`, or a symbol without its quotes.
+        pub fn text(self) -> SmolStr {
+            let mut name = self.significant();
+            match (name.next(), name.next()) {
+                (Some(word), Some(number)) => smol_str::format_smolstr!("{} {}", word.text(), number.text()),
+                (Some(word), None) => unquoted(word.text()).into(),
+                _ => SmolStr::default(),
+            }
+        }
+
+        pub fn is_symbol(self) -> bool {
+            self.child_token(SyntaxKind::QuotedSymbol).is_some()
+        }
+    }
+
+    impl<'t> TitleLine<'t> {
+        pub fn text(self) -> Option<SyntaxToken<'t>> {
+            self.child_token(SyntaxKind::FreeText)
+        }
+    }
+
+    impl<'t> BlockAttribute<'t> {
+        /// `AUTHOR`, `KNOW_HOW_PROTECT`; nothing for `{...}`.
+        pub fn keyword(self) -> Option<SyntaxToken<'t>> {
+            self.child_token(SyntaxKind::Ident)
+        }
+
+        pub fn value(self) -> Option<SyntaxToken<'t>> {
+            self.child_token(SyntaxKind::FreeText)
+        }
+
+        /// `{S7_attr := '...'}`
+        pub fn system_attributes(self) -> Option<SyntaxToken<'t>> {
+            self.child_token(SyntaxKind::Attribute)
+        }
+    }
+
+    impl<'t> TypeRef<'t> {
+        /// `10` of `STRING [10]`.
+        pub fn length(self) -> Option<SyntaxToken<'t>> {
+            self.significant()
+                .skip_while(|it| it.kind() != SyntaxKind::LBrack)
+                .nth(1)
+                .filter(|it| it.kind() != SyntaxKind::RBrack)
+        }
+    }
+
+    impl<'t> DataInit<'t> {
+        pub fn target(self) -> Option<Operand<'t>> {
+            self.child()
+        }
+    }
+
+    impl<'t> Network<'t> {
+        pub fn title(self) -> Option<TitleLine<'t>> {
+            self.header()?.child()
+        }
+
+        /// Whether the author left code out of this network (`...`).
+        pub fn is_elided(self) -> bool {
+            self.child_token(SyntaxKind::Elision).is_some()
+        }
     }
 }

@@ -430,11 +430,7 @@ pub fn lookup(word: &str, mnemonics: Mnemonics) -> Option<Op> {
 
 /// Every mnemonic of a set.
 pub fn all(mnemonics: Mnemonics) -> impl Iterator<Item = &'static str> {
-    let own = match mnemonics {
-        Mnemonics::German => GERMAN,
-        Mnemonics::English => ENGLISH,
-    };
-    BOTH.iter().chain(own).map(|it| it.0)
+    WORDS.all(mnemonics)
 }
 
 /// Like [`lookup`] for `word` with a `(` after it.
@@ -453,7 +449,11 @@ pub(super) fn is_mnemonic(word: &[u8]) -> bool {
 }
 
 /// The mnemonics of a language in both sets: open addressing with at most half of the slots taken, so that probing ends.
-pub(in crate::syntax) struct Words([Entry; SLOTS]);
+pub(in crate::syntax) struct Words {
+    slots: [Entry; SLOTS],
+    /// Words of both sets, of the German one alone, of the English one alone.
+    lists: [&'static [(&'static str, Op)]; 3],
+}
 
 #[derive(Clone, Copy)]
 struct Entry {
@@ -467,7 +467,11 @@ const SLOTS: usize = 1024;
 
 impl Words {
     /// Words of both sets, then those of one.
-    pub(in crate::syntax) const fn new(both: &[(&str, Op)], german: &[(&str, Op)], english: &[(&str, Op)]) -> Self {
+    pub(in crate::syntax) const fn new(
+        both: &'static [(&'static str, Op)],
+        german: &'static [(&'static str, Op)],
+        english: &'static [(&'static str, Op)],
+    ) -> Self {
         assert!((both.len() + german.len() + english.len()) * 2 < SLOTS);
         let mut table = [Entry { key: 0, german: None, english: None }; SLOTS];
         let mut at = 0;
@@ -485,7 +489,17 @@ impl Words {
             insert(&mut table, english[at].0, None, Some(english[at].1));
             at += 1;
         }
-        Self(table)
+        Self { slots: table, lists: [both, german, english] }
+    }
+
+    /// Every mnemonic of a set.
+    pub(in crate::syntax) fn all(&self, mnemonics: Mnemonics) -> impl Iterator<Item = &'static str> + use<> {
+        let [both, german, english] = self.lists;
+        let own = match mnemonics {
+            Mnemonics::German => german,
+            Mnemonics::English => english,
+        };
+        both.iter().chain(own).map(|it| it.0)
     }
 
     /// The mnemonic of `word` in one set, ignoring case.
@@ -528,7 +542,7 @@ impl Words {
     fn entry(&self, key: u64) -> Option<&Entry> {
         let mut slot = slot(key);
         loop {
-            let entry = &self.0[slot];
+            let entry = &self.slots[slot];
             if entry.key == key {
                 return Some(entry);
             }

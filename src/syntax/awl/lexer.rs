@@ -7,7 +7,7 @@
 
 use logos::Logos;
 
-use crate::syntax::parser::spaces;
+use crate::syntax::parser::{Tokens, spaces};
 use crate::syntax::{SyntaxKind, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,7 +182,7 @@ fn attribute(lexer: &mut logos::Lexer<'_, Lexeme>) -> Option<()> {
 
 /// Splits a unit into tokens, whose lengths add up to the text.
 pub(super) fn lex(text: &str) -> Vec<Token> {
-    let mut out = Output { tokens: Vec::with_capacity(text.len() / 3) };
+    let mut out = Tokens::with_capacity(text.len() / 3);
     let mut lexer = Lexeme::lexer(text);
     // Whether the next token starts an instruction: `L 5` is one, `L L 5` has one.
     let mut at_start = true;
@@ -217,13 +217,13 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
             },
             Ok(Lexeme::Title) => {
                 out.push(SyntaxKind::Ident, lexer.slice().len());
-                out.free_text(&mut lexer, b'=', line_end);
+                free_text(&mut out, &mut lexer, b'=', line_end);
                 at_start = false;
                 continue;
             }
             Ok(Lexeme::HeaderKey) if in_header => {
                 out.push(SyntaxKind::Ident, lexer.slice().len());
-                out.free_text(&mut lexer, b':', value_end);
+                free_text(&mut out, &mut lexer, b':', value_end);
                 at_start = false;
                 continue;
             }
@@ -235,7 +235,7 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
                     out.push(SyntaxKind::Whitespace, numbered);
                     out.push(SyntaxKind::Number, digits);
                     lexer.bump(numbered + digits);
-                    out.free_text(&mut lexer, b':', line_end);
+                    free_text(&mut out, &mut lexer, b':', line_end);
                 }
                 in_header = false;
                 at_start = true;
@@ -289,7 +289,7 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
                 SyntaxKind::Elision
             }
             Ok(Lexeme::Dots | Lexeme::Unclosed) | Err(()) => {
-                out.unknown(lexer.slice().len());
+                out.push(SyntaxKind::Unknown, lexer.slice().len());
                 at_start = false;
                 continue;
             }
@@ -336,47 +336,25 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
         lexer.bump(spaces);
         out.push(SyntaxKind::Whitespace, spaces);
     }
-    out.tokens
+    out.finish()
 }
 
-struct Output {
-    tokens: Vec<Token>,
-}
-
-impl Output {
-    /// Nothing for an empty token.
-    fn push(&mut self, kind: SyntaxKind, len: usize) {
-        // A source file is limited to 4 GiB: text ranges are 32-bit.
-        if let (1.., Ok(len)) = (len, u32::try_from(len)) {
-            self.tokens.push(Token { kind, len });
-        }
+/// After a keyword: if `separator` follows on the line, the separator and the text after it.
+fn free_text(out: &mut Tokens, lexer: &mut logos::Lexer<'_, Lexeme>, separator: u8, end: fn(&[u8]) -> usize) {
+    let rest = lexer.remainder();
+    let bytes = rest.as_bytes();
+    let at = skip_blanks(bytes, 0);
+    let assigns = separator == b':' && bytes.get(at + 1) == Some(&b'=');
+    if bytes.get(at) != Some(&separator) || assigns {
+        return;
     }
-
-    /// Runs of unknown characters become one token.
-    fn unknown(&mut self, len: usize) {
-        match (self.tokens.last_mut(), u32::try_from(len)) {
-            (Some(last), Ok(len)) if last.kind == SyntaxKind::Unknown => last.len += len,
-            _ => self.push(SyntaxKind::Unknown, len),
-        }
-    }
-
-    /// After a keyword: if `separator` follows on the line, the separator and the text after it.
-    fn free_text(&mut self, lexer: &mut logos::Lexer<'_, Lexeme>, separator: u8, end: fn(&[u8]) -> usize) {
-        let rest = lexer.remainder();
-        let bytes = rest.as_bytes();
-        let at = skip_blanks(bytes, 0);
-        let assigns = separator == b':' && bytes.get(at + 1) == Some(&b'=');
-        if bytes.get(at) != Some(&separator) || assigns {
-            return;
-        }
-        let start = skip_blanks(bytes, at + 1);
-        let text = rest[start..start + end(&bytes[start..])].trim_end_matches([' ', '\t']);
-        self.push(SyntaxKind::Whitespace, at);
-        self.push(if separator == b':' { SyntaxKind::Colon } else { SyntaxKind::Eq }, 1);
-        self.push(SyntaxKind::Whitespace, start - at - 1);
-        self.push(SyntaxKind::FreeText, text.len());
-        lexer.bump(start + text.len());
-    }
+    let start = skip_blanks(bytes, at + 1);
+    let text = rest[start..start + end(&bytes[start..])].trim_end_matches([' ', '\t']);
+    out.push(SyntaxKind::Whitespace, at);
+    out.push(if separator == b':' { SyntaxKind::Colon } else { SyntaxKind::Eq }, 1);
+    out.push(SyntaxKind::Whitespace, start - at - 1);
+    out.push(SyntaxKind::FreeText, text.len());
+    lexer.bump(start + text.len());
 }
 
 /// The value of AUTHOR, FAMILY, NAME and VERSION ends before a comment, a `;` and what else a header on one line has.

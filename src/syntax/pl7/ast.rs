@@ -56,9 +56,6 @@ nodes! {
     Rung,
     RungRow,
     Cell,
-    /// `VAR_INPUT ... END_VAR` of a DFB type.
-    VarSection,
-    VarDecl,
 }
 
 choices! {
@@ -499,11 +496,6 @@ impl<'t> IfStmt<'t> {
 }
 
 impl<'t> IfArm<'t> {
-    /// `IF`, `ELSIF` or `ELSEIF`.
-    pub fn keyword(self) -> Option<SyntaxToken<'t>> {
-        self.child_token(SyntaxKind::Ident)
-    }
-
     pub fn condition(self) -> Option<Expr<'t>> {
         self.child()
     }
@@ -638,11 +630,6 @@ impl<'t> ParenExpr<'t> {
     pub fn expr(self) -> Option<Expr<'t>> {
         self.child()
     }
-
-    /// `[%MW10<20]` rather than `(%MW10<20)`.
-    pub fn is_square(self) -> bool {
-        self.child_token(SyntaxKind::LBrack).is_some()
-    }
 }
 
 impl<'t> CallExpr<'t> {
@@ -747,14 +734,6 @@ impl<'t> NameRef<'t> {
     /// The symbol, or the DFB instance.
     pub fn name(self) -> Option<SyntaxToken<'t>> {
         self.child_token(SyntaxKind::Ident)
-    }
-
-    /// The items behind the dots: `Ecart` of `Controle.Ecart`.
-    pub fn items(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
-        self.0
-            .tokens()
-            .skip_while(|it| it.kind() != SyntaxKind::Dot)
-            .filter(|it| matches!(it.kind(), SyntaxKind::Ident | SyntaxKind::Number))
     }
 
     /// The name with its items and the suffix before an index, without blanks: `Controle.Ecart`, `Etat_pompe:X1`.

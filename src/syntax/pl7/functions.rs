@@ -110,20 +110,6 @@ impl Function {
         self.is_open = true;
         self
     }
-
-    pub fn min_arity(&self) -> usize {
-        self.parameters.len()
-    }
-
-    /// `None` if there is no limit that we know.
-    pub fn max_arity(&self) -> Option<usize> {
-        (!self.is_open).then_some(self.parameters.len())
-    }
-
-    /// Whether the argument at `position`, counted from 0, is written.
-    pub fn writes(&self, position: usize) -> bool {
-        self.parameters.get(position).is_some_and(Parameter::is_written)
-    }
 }
 
 const fn read(kind: Kind) -> Parameter {
@@ -482,14 +468,13 @@ mod tests {
     fn written_positions() {
         let written = |name| {
             let function = lookup(name)?;
-            Some((0..function.parameters.len()).filter(|it| function.writes(*it)).collect::<Vec<_>>())
+            let all = (0..).zip(function.parameters);
+            Some(all.filter(|it| it.1.is_written()).map(|it| it.0).collect::<Vec<usize>>())
         };
         assert_eq!(written("BIT_W"), Some(vec![4]));
         assert_eq!(written("SORT_ARW"), Some(vec![1]));
         assert_eq!(written("FTON"), Some(vec![2, 3, 4]));
         assert_eq!(written("RRTC"), Some(vec![0]));
         assert_eq!(written("WRTC"), Some(vec![]));
-        assert_eq!(lookup("SCOUNT").and_then(Function::max_arity), None);
-        assert_eq!(lookup("REPLACE").and_then(Function::max_arity), Some(4));
     }
 }

@@ -171,10 +171,6 @@ pub fn lookup(text: &str) -> Option<&'static Word> {
     WORDS.iter().find(|it| it.text.eq_ignore_ascii_case(text))
 }
 
-pub fn all() -> &'static [Word] {
-    WORDS
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@
 
 use logos::{Lexer, Logos};
 
-use crate::syntax::parser::spaces;
+use crate::syntax::parser::{Tokens, spaces};
 use crate::syntax::{SyntaxKind, Token};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,35 +139,22 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 
 /// The lengths of the tokens add up to the text, for every text.
 pub(super) fn lex(text: &str) -> Vec<Token> {
-    let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4 + 1);
+    let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut lexer = Lexeme::lexer(text);
     while let Some(lexeme) = lexer.next() {
         let kind = lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from);
-        let len = length(lexer.slice());
-        match tokens.last_mut() {
-            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
-            _ => tokens.push(Token { kind, len }),
-        }
+        tokens.push(kind, lexer.slice().len());
         // Only here does a `:4` or `.T` belong to what stands before it: `Pump:X4`, `%MW50[%MW5]:10`.
         if matches!(kind, SyntaxKind::Ident | SyntaxKind::RBrack | SyntaxKind::Number) {
             let suffix = suffix_length(lexer.remainder().as_bytes(), kind == SyntaxKind::RBrack);
-            if suffix > 0 {
-                lexer.bump(suffix);
-                tokens.push(Token { kind: SyntaxKind::ObjectSuffix, len: length(lexer.slice()) - len });
-            }
+            lexer.bump(suffix);
+            tokens.push(SyntaxKind::ObjectSuffix, suffix);
         }
         let spaces = spaces(lexer.remainder());
-        if spaces > 0 {
-            lexer.bump(spaces);
-            tokens.push(Token { kind: SyntaxKind::Whitespace, len: u32::try_from(spaces).unwrap_or(u32::MAX) });
-        }
+        lexer.bump(spaces);
+        tokens.push(SyntaxKind::Whitespace, spaces);
     }
-    tokens
-}
-
-/// Units are below 4 GiB: the source layer reads no larger file.
-fn length(text: &str) -> u32 {
-    u32::try_from(text.len()).unwrap_or(u32::MAX)
+    tokens.finish()
 }
 
 /// Length of `:10`, `:X4`, and after an index also `.T` or `.T:8`; 0 if there is none.
@@ -247,7 +234,7 @@ mod tests {
             "%CH3.0",
             "%mw10:x4",
         ] {
-            assert_eq!(lex(text), [Token { kind: ObjectAddress, len: length(text) }], "{text}");
+            assert_eq!(lex(text), [Token { kind: ObjectAddress, len: u32::try_from(text.len()).unwrap() }], "{text}");
         }
         assert_eq!(kinds("%L20"), [LabelAddress]);
         assert_eq!(kinds("%MW10:=%MW2"), [ObjectAddress, Assign, ObjectAddress]);

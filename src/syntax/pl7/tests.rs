@@ -523,7 +523,7 @@ mod text {
             [0, 1, 2, 2, 0]
         );
         let Stmt::Call(call) = statement("SORT_ARW(1,%MW0:10);") else { panic!() };
-        assert_eq!(call.function().map(|it| it.writes(1)), Some(true));
+        assert_eq!(call.function().map(|it| it.parameters[1].is_written()), Some(true));
         let Stmt::Call(call) = statement("INC %MW4;") else { panic!() };
         assert!(!call.has_parentheses() && matches!(call.operand(), Some(Expr::Object(_))));
         let Stmt::Jump(jump) = statement("JUMP %L12;") else { panic!() };
@@ -584,7 +584,7 @@ mod text {
         let Expr::Unary(it) = expr("fe a") else { panic!() };
         assert_eq!(it.op(), Some(UnaryOp::Fe));
         let Expr::Paren(it) = expr("[a<b]") else { panic!() };
-        assert!(it.is_square());
+        assert!(matches!(it.expr(), Some(Expr::Bin(_))));
         let Expr::Call(it) = expr("LENGHT_ARX(%M0:4)") else { panic!() };
         assert_eq!(it.function().map(|it| it.also), Some(&["LENGTH_ARX"][..]));
         assert_eq!(it.arguments().len(), 1);
@@ -624,7 +624,7 @@ mod text {
         assert!(it.index().is_some());
         let Expr::Name(it) = expr("I102.MOD.ERR") else { panic!() };
         assert_eq!(it.path(), "I102.MOD.ERR");
-        assert_eq!(it.items().map(|it| it.text().to_owned()).collect::<Vec<_>>(), ["MOD", "ERR"]);
+        assert_eq!(it.name().map(|it| it.text().to_owned()).as_deref(), Some("I102"));
         let Expr::Name(it) = expr("Température:12") else { panic!() };
         assert_eq!((&*it.path(), it.suffix().as_deref()), ("Température:12", Some(":12")));
     }

@@ -16,11 +16,7 @@ pub fn lookup(word: &str, mnemonics: Mnemonics) -> Option<Op> {
 
 /// Every mnemonic of a set.
 pub fn all(mnemonics: Mnemonics) -> impl Iterator<Item = &'static str> {
-    let own = match mnemonics {
-        Mnemonics::German => GERMAN,
-        Mnemonics::English => ENGLISH,
-    };
-    BOTH.iter().chain(own).map(|it| it.0)
+    WORDS.all(mnemonics)
 }
 
 /// Like [`lookup`] for `word` with `last` after it.

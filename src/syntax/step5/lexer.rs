@@ -3,13 +3,14 @@
 //! What a word is depends on its place: at the start of an instruction it is a mnemonic, behind one the letters of an
 //! operand, which are one token with its number (`M 0.0`, `KF +5`).
 
+use crate::syntax::parser::Tokens;
 use crate::syntax::{SyntaxKind, Token};
 
 use SyntaxKind::*;
 
 /// Splits a unit into tokens, whose lengths add up to the text.
 pub(super) fn lex(text: &str) -> Vec<Token> {
-    let mut lexer = Lexer { text, at: 0, tokens: Vec::with_capacity(text.len() / 3) };
+    let mut lexer = Lexer { text, at: 0, tokens: Tokens::with_capacity(text.len() / 3) };
     let (mut line_start, mut at_start) = (true, true);
     while let Some(next) = lexer.peek() {
         match next {
@@ -58,7 +59,7 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
         }
         line_start = false;
     }
-    lexer.tokens
+    lexer.tokens.finish()
 }
 
 fn is_blank(it: char) -> bool {
@@ -197,7 +198,7 @@ fn number_end(bytes: &[u8], at: usize, line_start: bool) -> usize {
 struct Lexer<'t> {
     text: &'t str,
     at: usize,
-    tokens: Vec<Token>,
+    tokens: Tokens,
 }
 
 impl<'t> Lexer<'t> {
@@ -222,12 +223,8 @@ impl<'t> Lexer<'t> {
         self.text[from..].find(|it| !fits(it)).map_or(self.text.len(), |it| from + it)
     }
 
-    /// Nothing for an empty token.
     fn push_to(&mut self, kind: SyntaxKind, end: usize) {
-        // A source file is limited to 4 GiB: text ranges are 32-bit.
-        if let (1.., Ok(len)) = (end - self.at, u32::try_from(end - self.at)) {
-            self.tokens.push(Token { kind, len });
-        }
+        self.tokens.push(kind, end - self.at);
         self.at = end;
     }
 
@@ -289,14 +286,7 @@ impl<'t> Lexer<'t> {
             [b'*', ..] => (Star, 1),
             _ => (Unknown, self.peek().map_or(1, char::len_utf8)),
         };
-        match self.tokens.last_mut() {
-            // Runs of unknown characters become one token.
-            Some(last) if kind == Unknown && last.kind == Unknown => {
-                last.len = last.len.saturating_add(u32::try_from(len).unwrap_or(u32::MAX));
-                self.at += len;
-            }
-            _ => self.push_to(kind, self.at + len),
-        }
+        self.push_to(kind, self.at + len);
         matches!(kind, Colon | LParen | Elision) || at_start && kind == RParen
     }
 }

@@ -4,43 +4,48 @@
 //! is told by its form. The layout of the records is not published: assumed is that control characters, or two
 //! blanks at least, part their fields.
 
-use crate::syntax::SyntaxKind::{FreeText, Ident, Newline, ObjectRef, Unknown, VarDecl, VarName, Whitespace};
-use crate::syntax::{Parse, Parser, SyntaxKind, Token};
+use std::ops::Range;
 
-/// Fields of a line: where the operand is, the symbol, and the comment behind them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Row<'t> {
-    pub(crate) operand: &'t str,
-    pub(crate) symbol: &'t str,
-    pub(crate) comment: &'t str,
+use crate::syntax::Parse;
+use crate::syntax::SyntaxKind::{Newline, Unknown, Whitespace};
+use crate::syntax::symbol_table::{Field, Rows};
+
+/// Fields of a line, by their places in it: the operand, the symbol, and the comment behind them, which may be empty.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Row {
+    operand: Range<usize>,
+    symbol: Range<usize>,
+    comment: Range<usize>,
 }
 
 /// Reads a line, without its end. `None` if it names no operand and symbol, in this order.
-pub(crate) fn row(line: &str) -> Option<Row<'_>> {
+pub(crate) fn row(line: &str) -> Option<Row> {
     let is_break = |it: char| it.is_control();
     let by_blanks = !line.contains(is_break);
-    let mut rest = line;
-    let mut next = || loop {
-        rest = rest.trim_start_matches(|it: char| is_break(it) || it == ' ');
+    let text = |field: &Range<usize>| line.get(field.clone()).unwrap_or_default();
+    let mut at = 0;
+    let mut next = || {
+        let rest = line.get(at..).unwrap_or_default();
+        // A break may be a blank too.
+        let rest = rest.trim_start_matches(|it: char| is_break(it) || it.is_whitespace());
         if rest.is_empty() {
             return None;
         }
+        let start = line.len() - rest.len();
         let end = if by_blanks { rest.find("  ") } else { rest.find(is_break) };
-        let (field, behind) = rest.split_at(end.unwrap_or(rest.len()));
-        rest = behind;
-        let field = field.trim();
-        if !field.is_empty() {
-            return Some(field);
-        }
+        let field = rest.get(..end.unwrap_or(rest.len())).unwrap_or_default();
+        at = start + field.len();
+        Some(start..start + field.trim_end().len())
     };
-    let mut field = next()?;
+    let mut operand = next()?;
     // The number of the line may stand before the operand.
-    if field.bytes().all(|it| it.is_ascii_digit()) {
-        field = next()?;
+    if text(&operand).bytes().all(|it| it.is_ascii_digit()) {
+        operand = next()?;
     }
-    let operand = Some(field).filter(|it| is_operand(it))?;
-    let symbol = next().filter(|it| it.chars().count() <= LONGEST_SYMBOL && !is_operand(it))?;
-    Some(Row { operand, symbol, comment: next().unwrap_or_default() })
+    let symbol = next()?;
+    let comment = next().unwrap_or(symbol.end..symbol.end);
+    let is_symbol = text(&symbol).chars().count() <= LONGEST_SYMBOL && !is_operand(text(&symbol));
+    (is_operand(text(&operand)) && is_symbol).then_some(Row { operand, symbol, comment })
 }
 
 /// Characters of the longest symbol that the programming device takes (the vendor's general documentation).
@@ -54,77 +59,48 @@ fn is_operand(field: &str) -> bool {
         && number.bytes().all(|it| it.is_ascii_digit() || it == b'.')
 }
 
-/// Parses a table. Total and linear for every text. `Root > VarDecl*`; `VarDecl > ObjectRef, VarName, FreeText?`.
+/// Parses a table. Total and linear for every text. A line that is no row is kept, and is no error.
 pub fn parse(text: &str) -> Parse {
-    let tokens = lex(text);
-    let mut p = Parser::new(text, &tokens);
-    let starts = |p: &Parser<'_>| p.at(Ident) && p.nth(1) == Some(FreeText);
-    while !p.at_end() {
-        if !starts(&p) {
-            p.bump();
-            continue;
-        }
-        let decl = p.start();
-        let operand = p.start();
-        p.bump();
-        p.complete(operand, ObjectRef);
-        let name = p.start();
-        p.bump_as(Ident);
-        p.complete(name, VarName);
-        if !p.newline_before() {
-            p.eat(FreeText);
-        }
-        p.complete(decl, VarDecl);
-    }
-    p.finish()
-}
-
-fn lex(text: &str) -> Vec<Token> {
-    let mut tokens = Vec::new();
-    let mut push = |kind: SyntaxKind, text: &str| {
-        // Units are below 4 GiB: the source layer reads no larger file.
-        if let Some(len) = u32::try_from(text.len()).ok().filter(|&it| it > 0) {
-            tokens.push(Token { kind, len });
-        }
-    };
+    let mut rows = Rows::default();
     for whole in text.split_inclusive(['\n', '\r']) {
-        let line = whole.trim_end_matches(['\n', '\r']);
-        let mut at = 0;
-        if let Some(row) = row(line) {
-            for (kind, field) in [(Ident, row.operand), (FreeText, row.symbol), (FreeText, row.comment)] {
-                // The fields are parts of the line, in order.
-                let Some(start) = (field.as_ptr() as usize).checked_sub(line.as_ptr() as usize).filter(|it| *it >= at)
-                else {
-                    continue;
-                };
-                push(Whitespace, line.get(at..start).unwrap_or_default());
-                push(kind, field);
-                at = start + field.len();
+        let (line, end) = whole.split_at(whole.trim_end_matches(['\n', '\r']).len());
+        match row(line) {
+            Some(row) => {
+                rows.open();
+                let mut at = 0;
+                for (field, part) in
+                    [(Field::Address, row.operand), (Field::Name, row.symbol), (Field::Comment, row.comment)]
+                {
+                    rows.push(Whitespace, part.start.saturating_sub(at));
+                    at = part.end;
+                    rows.field(field, line.get(part).unwrap_or_default());
+                }
+                rows.push(Whitespace, line.len() - at);
+                rows.close();
             }
-            push(Whitespace, line.get(at..).unwrap_or_default());
-        } else {
-            let blank = line.trim().is_empty();
-            push(if blank { Whitespace } else { Unknown }, line);
+            None if line.trim().is_empty() => rows.push(Whitespace, line.len()),
+            None => rows.push(Unknown, line.len()),
         }
-        push(Newline, &whole[line.len()..]);
+        rows.push(Newline, end.len());
     }
-    tokens
+    rows.parse(text)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::syntax::SyntaxKind::VarDecl;
 
     #[test]
     fn rows_in_both_forms() {
-        let expected = Some(Row { operand: "E 0.0", symbol: "START", comment: "Taster" });
+        let fields = |line: &'static str| row(line).map(|it| [it.operand, it.symbol, it.comment].map(|it| &line[it]));
         for line in [
             "1\tE 0.0\tSTART\tTaster",
             "\tE 0.0\tSTART\tTaster",
             "\u{1}E 0.0   \u{2}START   \u{3}Taster",
             "E 0.0   START     Taster",
         ] {
-            assert_eq!(row(line), expected, "{line:?}");
+            assert_eq!(fields(line), Some(["E 0.0", "START", "Taster"]), "{line:?}");
         }
         // The order of STEP 7's tables.
         for line in ["\tPump\tE 0.0\tcomment", "", "E 0.0", "text without an operand", "\tx\ty\tz"] {

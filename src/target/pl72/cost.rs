@@ -41,13 +41,6 @@ pub struct TimeRange {
     pub max_ns: u64,
 }
 
-impl TimeRange {
-    /// The range that ends later.
-    pub fn worse(self, other: Self) -> Self {
-        if self.max_ns >= other.max_ns { self } else { other }
-    }
-}
-
 /// An element of a network, as the table tells them apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Element {
@@ -309,12 +302,13 @@ pub static SYSTEM_COSTS: &[SystemCost] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::target::pl72::{CONTROLLERS, Model};
+    use crate::target::pl72::CONTROLLERS;
 
     fn time(name: &str, element: Element, quantity: u32) -> Option<(u64, u64)> {
         let controller = CONTROLLERS.iter().find(|it| it.name == name);
         assert!(controller.is_some(), "{name}");
-        let range = Model { controller, version: None }.time(element, quantity)?;
+        let row = COSTS.iter().find(|it| it.element == element)?;
+        let range = row.time(controller?.series)?.range(quantity);
         Some((range.min_ns, range.max_ns))
     }
 
@@ -329,10 +323,8 @@ mod tests {
         assert_eq!(time("TSX 47-20", Element::AsciiConversion, 5), Some((470_000, 470_000)));
         assert_eq!(time("TSX 47-10", Element::WordsToWords, 60), Some((3_750_000, 3_750_000)));
         assert_eq!(time("TSX 17-20", Element::Divide, 0), Some((196_000, 733_000)));
-        let worst = Model::default().time(Element::Timer, 0);
-        assert_eq!(worst, Some(TimeRange { min_ns: 44_000, max_ns: 78_000 }));
         // No quantity is too large.
-        assert!(Model::default().time(Element::WordsToWords, u32::MAX).is_some());
+        assert!(time("TSX 47-10", Element::WordsToWords, u32::MAX).is_some());
     }
 
     #[test]

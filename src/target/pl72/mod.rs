@@ -23,7 +23,7 @@ pub use operation::{
     ARITHMETIC, ASCII_DIGITS, ASCII_WORDS, BCD_MAX, BIT_STRING, COMPARE_COLUMNS, OPERATE_COLUMNS, OPERATIONS, Operand,
     OperandRange, Operation, OperationKind, SHIFT, TRANSFERS, Transfer,
 };
-pub use release::{Condition, Feature, LockAction, RELEASES, Release, UnknownVersion, Version};
+pub use release::{Feature, RELEASES, Release, UnknownVersion, Version};
 pub use system::{Manager, SYSTEM_BITS, SYSTEM_WORDS, SystemObject, Writer, system_bit, system_word};
 
 use super::{ChartBits, Counted, Limit, Numbered, Range};
@@ -355,15 +355,6 @@ impl Model {
         self.series().any(|it| it == Series::Tsx17)
     }
 
-    /// What a feature needs beside the controller, where every release that has it needs something.
-    pub fn condition(&self, feature: Feature) -> Option<Condition> {
-        let mut found = None;
-        for release in self.releases().filter(|it| it.features.contains(&feature)) {
-            found = Some(*release.conditions.iter().find(|it| it.feature == feature)?);
-        }
-        found
-    }
-
     /// How many objects of a kind there are: 0 where the controller has none.
     pub fn count(&self, kind: Kind) -> Limit {
         let by_release = |count: fn(&Release) -> Limit| self.releases().map(count).max_by_key(|it| it.value);
@@ -399,36 +390,16 @@ impl Model {
         rows.flat_map(|row| self.series().filter_map(|it| row.count(it))).max_by_key(|it| it.value)
     }
 
-    /// Where inputs and outputs may be; `None` where the controller is not known.
-    pub fn channels(&self) -> Option<&'static Channels> {
-        self.controller.map(|it| it.channels)
-    }
-
     /// Whether a system bit has a function. `None` where no row of the table is about it.
     pub fn has_system_bit(&self, number: u32) -> Option<bool> {
-        self.has_system_object(SYSTEM_BITS, number)
-    }
-
-    /// Whether a system word has a function. `None` where no row of the table is about it.
-    pub fn has_system_word(&self, number: u32) -> Option<bool> {
-        self.has_system_object(SYSTEM_WORDS, number)
-    }
-
-    fn has_system_object(&self, rows: &'static [SystemObject], number: u32) -> Option<bool> {
         let version = self.controller.and(self.version);
-        let mut rows = rows.iter().filter(|it| it.number == number).peekable();
+        let mut rows = SYSTEM_BITS.iter().filter(|it| it.number == number).peekable();
         rows.peek()?;
         Some(rows.any(|row| {
             self.series().any(|series| {
                 row.since[series.index()].is_some_and(|since| version.is_none_or(|version| since <= version))
             })
         }))
-    }
-
-    /// Time and size of an element of a program: the longest of what the controller may be. `None` where it has none.
-    pub fn time(&self, element: Element, quantity: u32) -> Option<TimeRange> {
-        let row = COSTS.iter().find(|it| it.element == element)?;
-        self.series().filter_map(|series| row.time(series)).map(|it| it.range(quantity)).reduce(TimeRange::worse)
     }
 
     /// Whether an operation is one of the controller's.
@@ -507,23 +478,6 @@ mod tests {
         assert!(words.iter().all(|it| it.source == "PL72:577"));
         let constants = columns.map(|(name, version)| model(name, Some(version)).count(Kind::Constant).value);
         assert_eq!(constants, [128, 1024, 128, 1024, 1024, 1024, 1024]);
-        let lock = columns.map(|(name, version)| model(name, Some(version)).releases().next().and_then(|it| it.lock));
-        use LockAction::{ColdStart, WarmStart};
-        let cold = Some(ColdStart);
-        let warm = Some(WarmStart);
-        assert_eq!(lock, [cold, cold, cold, warm, warm, warm, None]);
-    }
-
-    #[test]
-    fn conditions_of_features() {
-        let text = |name, version, feature| model(name, version).condition(feature).map(|it| it.source);
-        assert_eq!(text("TSX 17-20", None, Feature::Network), Some("PL72:588"));
-        assert_eq!(text("TSX 17-20", None, Feature::Couplers), Some("PL72:594"));
-        assert_eq!(text("TSX 17-20", None, Feature::WordBits), None);
-        assert_eq!(text("TSX 47-20", Some("V4"), Feature::UniTelway), Some("PL72:590"));
-        assert_eq!(text("TSX 47-20", Some("V3"), Feature::UniTelway), None);
-        assert_eq!(Model::default().condition(Feature::Network), None);
-        assert!(Model::default().condition(Feature::UniTelway).is_some());
     }
 
     #[test]
@@ -567,7 +521,7 @@ mod tests {
 
     #[test]
     fn channels() {
-        let channels = |name| model(name, None).channels().unwrap_or_else(|| panic!("{name}"));
+        let channels = |name| model(name, None).controller.unwrap_or_else(|| panic!("{name}")).channels;
         let small = channels("TSX 27");
         let modules = |it: &Modules| (0..9).filter(|&module| it.contains(module)).collect::<Vec<_>>();
         assert_eq!(modules(&small.input_modules), [1, 3, 5, 7]);
@@ -584,7 +538,6 @@ mod tests {
         let micro = channels("TSX 17-20");
         assert_eq!(4 * (micro.inputs.last + 1), 96);
         assert_eq!(micro.word_modules.map(|it| (it.first, it.last)), Some((1, 3)));
-        assert_eq!(Model::default().channels(), None);
         assert_eq!(micro.misfit(false, None, 0, 25), None);
         assert!(matches!(micro.misfit(false, None, 1, 25), Some(Misfit::Channel(it)) if it.last == 23));
         assert!(matches!(micro.misfit(true, None, 4, 0), Some(Misfit::Module(it)) if it.range.last == 3));
@@ -607,13 +560,6 @@ mod tests {
         assert_eq!((bit("TSX 17-20", None, 2), bit("TSX 17-20", None, 4)), (None, None));
         // SY03 means different things, so every controller has it but the old ones.
         assert_eq!((bit("TSX 17-20", None, 3), bit("TSX 27", Some("V2"), 3)), (Some(true), Some(false)));
-        let word = |name, number| model(name, None).has_system_word(number);
-        assert_eq!(
-            (word("TSX 47-10", 3), word("TSX 47-10", 4), word("TSX 27", 0)),
-            (Some(true), Some(false), Some(false))
-        );
-        assert_eq!((word("TSX 17-20", 6), word("TSX 17-20", 50), word("TSX 17-20", 7)), (Some(true), Some(true), None));
-        assert_eq!(Model::default().has_system_word(50), Some(true));
     }
 
     #[test]

@@ -74,6 +74,7 @@ pub enum Feature {
 }
 
 impl Feature {
+    #[cfg(test)]
     pub const ALL: [Self; 10] = [
         Self::PeriodicFastTask,
         Self::EventFastTask,
@@ -120,24 +121,6 @@ impl Feature {
     }
 }
 
-/// What else a feature needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Condition {
-    pub feature: Feature,
-    /// Completes "available ".
-    pub text: &'static str,
-    pub source: &'static str,
-}
-
-/// What turning the lock of the cartridge does (PL72:586).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LockAction {
-    /// SY0 becomes 1.
-    ColdStart,
-    /// SY1 becomes 1.
-    WarmStart,
-}
-
 /// A column of the table of versions (PL72:571-573).
 #[derive(Debug, PartialEq, Eq)]
 pub struct Release {
@@ -148,12 +131,10 @@ pub struct Release {
     /// First version of the next release.
     pub before: Option<Version>,
     pub features: &'static [Feature],
-    pub conditions: &'static [Condition],
     /// `Wi`.
     pub words: Limit,
     /// `CWi`.
     pub constants: Limit,
-    pub lock: Option<LockAction>,
 }
 
 const V0: Version = Version::new(0, 0);
@@ -174,10 +155,8 @@ pub(super) static TSX_27_V2: Release = Release {
     from: V0,
     before: Some(V3),
     features: &[Feature::SimpleText],
-    conditions: &[],
     words: words(128),
     constants: constants(128),
-    lock: Some(LockAction::ColdStart),
 };
 
 pub(super) static TSX_27_V3: Release = Release {
@@ -192,10 +171,8 @@ pub(super) static TSX_27_V3: Release = Release {
         Feature::AsciiConversion,
         Feature::CompleteText,
     ],
-    conditions: &[],
     words: words(128),
     constants: constants(1024),
-    lock: Some(LockAction::ColdStart),
 };
 
 pub(super) static TSX_47_V2: Release = Release {
@@ -204,10 +181,8 @@ pub(super) static TSX_47_V2: Release = Release {
     from: V0,
     before: Some(V3),
     features: &[Feature::SimpleText, Feature::Network],
-    conditions: &[],
     words: words(128),
     constants: constants(128),
-    lock: Some(LockAction::ColdStart),
 };
 
 pub(super) static TSX_47_10_V3: Release = Release {
@@ -223,10 +198,8 @@ pub(super) static TSX_47_10_V3: Release = Release {
         Feature::CompleteText,
         Feature::Network,
     ],
-    conditions: &[],
     words: words(1024),
     constants: constants(1024),
-    lock: Some(LockAction::WarmStart),
 };
 
 pub(super) static TSX_47_20_V3: Release = Release {
@@ -243,10 +216,8 @@ pub(super) static TSX_47_20_V3: Release = Release {
         Feature::Network,
         Feature::Couplers,
     ],
-    conditions: &[],
     words: words(1024),
     constants: constants(1024),
-    lock: Some(LockAction::WarmStart),
 };
 
 pub(super) static TSX_47_20_V4: Release = Release {
@@ -264,14 +235,8 @@ pub(super) static TSX_47_20_V4: Release = Release {
         Feature::UniTelway,
         Feature::Couplers,
     ],
-    conditions: &[Condition {
-        feature: Feature::UniTelway,
-        text: "through the communication coupler TSX SCM 21.6",
-        source: "PL72:590",
-    }],
     words: words(1024),
     constants: constants(1024),
-    lock: Some(LockAction::WarmStart),
 };
 
 pub(super) static TSX_17_20: Release = Release {
@@ -289,26 +254,8 @@ pub(super) static TSX_17_20: Release = Release {
         Feature::UniTelway,
         Feature::Couplers,
     ],
-    conditions: &[
-        Condition {
-            feature: Feature::Network,
-            text: "with the software cartridge TSX P1720FC2 or FD2",
-            source: "PL72:588",
-        },
-        Condition {
-            feature: Feature::UniTelway,
-            text: "on the terminal port with the adapter TSX 17 ACC5",
-            source: "PL72:592",
-        },
-        Condition {
-            feature: Feature::Couplers,
-            text: "with any software cartridge but TSX P1720F",
-            source: "PL72:594",
-        },
-    ],
     words: words(1024),
     constants: constants(1024),
-    lock: None,
 };
 
 /// Every column of the table of versions.

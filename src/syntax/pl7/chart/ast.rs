@@ -2,7 +2,7 @@
 
 use super::word::Word;
 use crate::syntax::node::nodes;
-use crate::syntax::pl7::ast::{Rung, Sentence, Stmt};
+use crate::syntax::pl7::ast::{Rung, Sentence};
 use crate::syntax::{AstChildren, AstNode as _, SyntaxElement, SyntaxKind, SyntaxToken};
 
 /// Which step.
@@ -238,11 +238,6 @@ impl<'t> Transition<'t> {
     /// Whether part of the code was not understood.
     pub fn has_error(self) -> bool {
         self.syntax().descendants().any(|it| it.kind() == SyntaxKind::Error)
-    }
-
-    /// The statements of all sentences.
-    pub fn statements(self) -> impl Iterator<Item = Stmt<'t>> {
-        self.sentences().flat_map(Sentence::statements)
     }
 }
 

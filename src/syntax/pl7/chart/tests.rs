@@ -64,7 +64,7 @@ fn a_page_is_read() {
     );
     let [transition] = all::<Transition>(&parse)[..] else { panic!("one transition") };
     assert_eq!(transition.cell().and_then(|it| it.place()), Some((4, 4)));
-    assert_eq!((transition.language(), transition.statements().count()), (Some(CodeLanguage::St), 1));
+    assert_eq!((transition.language(), transition.sentences().count()), (Some(CodeLanguage::St), 1));
     let [link] = all::<ChartLink>(&parse)[..] else { panic!("one link") };
     assert_eq!(link.kind(), Some(LinkKind::OrConvergence));
     let places = |cells: Vec<super::ast::PageCell<'_>>| cells.iter().filter_map(|it| it.place()).collect::<Vec<_>>();
