@@ -26,10 +26,12 @@ pub mod parameters;
 pub mod priority;
 pub mod processing;
 pub mod program;
+pub mod ranges;
 pub mod reach;
 pub mod sequences;
 pub mod size;
 pub mod symbols;
+pub mod turns;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
