@@ -156,13 +156,14 @@ impl Counter<'_> {
 
     /// A loop that goes on while a counter stands on one side of a constant.
     fn by_condition(&self, id: u32, it: &Loop) -> Option<u64> {
-        let (condition, holds) = match it.kind {
-            LoopKind::While | LoopKind::Jump => (it.condition?, true),
-            LoopKind::Repeat => (it.condition?, false),
+        let mut open = vec![(it.condition?, it.kind != LoopKind::Repeat)];
+        match it.kind {
+            LoopKind::While | LoopKind::Repeat => {}
+            // A jump is taken where control comes to it, and its own condition holds.
+            LoopKind::Jump => open.push((self.model.statements.get(it.body.end.checked_sub(1)? as usize)?.path, true)),
             LoopKind::For => return None,
-        };
+        }
         // Where several conditions have to hold, each alone bounds the loop.
-        let mut open = vec![(condition, holds)];
         let mut least: Option<u64> = None;
         let mut budget = 32;
         while let Some((at, holds)) = open.pop() {
@@ -192,6 +193,10 @@ impl Counter<'_> {
     fn bounded(&self, id: u32, it: &Loop, op: Comparison, counter: ExprId, limit: ExprId) -> Option<u64> {
         let exprs = &self.model.exprs;
         let Expr::Read { object, version } = *exprs.get(counter) else { return None };
+        let is_asked = |it: &Access| it.object == object && it.version == version && it.mode.reads();
+        if !accesses(self.model, it).iter().any(is_asked) {
+            return None;
+        }
         let (write, value) = self.only_store(it, object)?;
         let is_own = |it: ExprId| matches!(*exprs.get(it), Expr::Read { object: read, .. } if read == object);
         let step = match *exprs.get(value) {
@@ -491,7 +496,7 @@ mod tests {
         let [outer, inner] = found.as_slice() else { panic!("{found:?}") };
         assert_eq!((outer.parent, inner.parent), (None, Some(0)));
         assert_eq!((outer.calls.as_slice(), inner.calls.as_slice()), (&[1][..], &[0][..]));
-        // A store with its two operands, and the call; around it, those and the first value of the index.
-        assert_eq!((inner.operations, outer.operations), (4, 7));
+        // The index, a store with its two operands, and the call; around it, also the first value of the inner index.
+        assert_eq!((inner.operations, outer.operations), (5, 7));
     }
 }

@@ -145,8 +145,9 @@ impl<'m> Ranges<'m> {
         if query.work.get() == 0 || depth >= DEEPEST {
             return Some(place);
         }
-        let exprs = &self.model.exprs;
-        let is_sure = given.iter().any(|it| it.1 && exprs.has_conjunct_prefix(it.0, store.path));
+        let with = |it: bool| [given, &[(store.path, it)]].concat();
+        let is_plain = given.iter().any(|it| it.1 && self.model.exprs.has_conjunct_prefix(it.0, store.path));
+        let is_sure = is_plain || self.is_never(query, &with(false));
         let after = |given: &Given| -> Number {
             let value = self.eval(query, store.value, given, depth + 1).map_or(place, |it| it.stored_in(place));
             Number { span: Span { by: Some(store.anchor), ..value.span }, ..value }
@@ -154,8 +155,7 @@ impl<'m> Ranges<'m> {
         if is_sure {
             return Some(after(given));
         }
-        let with = |it: bool| [given, &[(store.path, it)]].concat();
-        let taken = (!self.excludes(given, store.path)).then(|| after(&with(true)));
+        let taken = (!self.is_never(query, &with(true))).then(|| after(&with(true)));
         let passed = self.read(query, object, store.replaced, &with(false), depth + 1);
         Some(match (taken, passed) {
             (Some(a), Some(b)) => Number { span: a.span.join(b.span), ..place },
@@ -164,13 +164,17 @@ impl<'m> Ranges<'m> {
         })
     }
 
-    /// Whether a path is surely not taken where some conditions hold.
-    fn excludes(&self, given: &Given, path: ExprId) -> bool {
+    /// Whether conditions surely never hold at once.
+    fn is_never(&self, query: &Query, given: &Given) -> bool {
         /// Of longer conditions, one is not looked for.
         const LONGEST: usize = 32;
-        let space = Space::of(self.model);
-        let is_short = |it: ExprId| self.model.exprs.is_within(it, LONGEST);
-        is_short(path) && given.iter().any(|it| it.1 && is_short(it.0) && space.exclusive(it.0, path))
+        /// What it costs, in expressions.
+        const COST: u32 = 16;
+        let work = query.work.get();
+        query.work.set(work.saturating_sub(COST));
+        let is_short = |it: &(ExprId, bool)| self.model.exprs.is_within(it.0, LONGEST);
+        let short: Vec<(ExprId, bool)> = given.iter().filter(|it| is_short(it)).copied().collect();
+        work > COST && short.last() == given.last() && Space::of(self.model).solve(&short).is_never()
     }
 
     /// The values of the index of a loop around the place: from its first to its last.

@@ -40,13 +40,23 @@ impl Span {
         first <= self.first && self.last <= last
     }
 
+    /// Without an end that is 0 and is not meant.
+    fn trimmed(mut self) -> Option<Self> {
+        if self.not_zero {
+            self.first += i64::from(self.first == 0);
+            self.last -= i64::from(self.last == 0);
+            self.not_zero = self.first < 0 && self.last > 0;
+        }
+        (self.first <= self.last).then_some(self)
+    }
+
     /// The values of either.
     pub fn join(self, other: Self) -> Self {
         let ends = |it: Self| (it.first, it.tells_first);
         let (first, tells_first) = if ends(self).0 <= ends(other).0 { ends(self) } else { ends(other) };
         let (last, tells_last) =
             if self.last >= other.last { (self.last, self.tells_last) } else { (other.last, other.tells_last) };
-        let not_zero = !self.contains(0) && !other.contains(0);
+        let not_zero = first < 0 && last > 0 && !self.contains(0) && !other.contains(0);
         Self { first, last, tells_first, tells_last, not_zero, by: self.by.or(other.by) }
     }
 
@@ -78,7 +88,7 @@ impl Span {
             it.last -= i64::from(it.last == other.last);
             it.not_zero |= other.first == 0;
         }
-        (it.first <= it.last).then_some(it)
+        it.trimmed()
     }
 }
 
