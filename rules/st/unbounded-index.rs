@@ -27,8 +27,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             None => format!("with {}", first.number),
         };
         let verb = if first.always { "leads" } else { "can lead" };
-        let message =
-            format!("the index {verb} out of the area: {with}, `{}` is number {}", object.text, room.reached(first.number));
+        let message = format!(
+            "the index {verb} out of the area: {with}, `{}` is number {}",
+            object.text,
+            room.reached(first.number)
+        );
         let report = sink
             .report(first.site, message)
             .related_all(first.because.iter().cloned())
