@@ -21,8 +21,10 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let mut candidates = assignments.filter_map(|it| {
         let (target, value) = (it.target()?, it.value()?);
         let is_word = cx.kinds().type_of(target) == Some(Type::Word);
-        let is_wide = is_word && matches!(cx.kinds().of(value), Kind::Double | Kind::Integer);
-        is_wide.then(|| (it.syntax().text_range(), target.syntax().text_range(), value.syntax().text_range()))
+        let kind = cx.kinds().of(value);
+        let is_wide = is_word && matches!(kind, Kind::Double | Kind::Integer);
+        let places = [it.syntax(), target.syntax(), value.syntax()].map(|it| it.text_range());
+        is_wide.then_some((kind, places))
     });
     let Some(first) = candidates.next() else { return };
     let model = cx.model;
@@ -34,10 +36,14 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         })
         .collect();
     let ranges = Ranges::new(model);
-    for (statement, target, value) in std::iter::once(first).chain(candidates) {
+    for (kind, [statement, target, value]) in std::iter::once(first).chain(candidates) {
         let Some(&(at, expr)) = stores.get(&statement) else { continue };
         let Some(path) = model.statements.get(at as usize).map(|it| it.path) else { continue };
         let Some(span) = ranges.of(expr, at, path).map(|it| it.span) else { continue };
+        // The result of some functions is a word or a double word, nothing tells which.
+        if kind == Kind::Integer && !span.is_one() {
+            continue;
+        }
         // `AND` and `SHR` give patterns: all that counts is that no bit is lost. So it is with constants.
         let of_bits = match model.exprs.get(expr) {
             Expr::Binary(Operator::And, ..) | Expr::Int(_) => true,
