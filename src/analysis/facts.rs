@@ -11,7 +11,9 @@ use super::chart::ChartFacts;
 use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
 use super::gaps;
+use super::ranges::demands::{self, Demanded};
 use super::sequences::code::CodeFacts;
+use super::turns::{self, FactLoop};
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
 use crate::model::dfb::Interface;
@@ -157,6 +159,9 @@ pub struct UnitFacts {
     pub commented: bool,
     /// Of a unit of PL7-2.
     pub cost: Option<Box<UnitCost>>,
+    /// Indexes and divisors, with the ranges of their values.
+    pub demands: Vec<Demanded>,
+    pub loops: Vec<FactLoop>,
     /// Of Siemens blocks: what sequences are recovered from.
     pub code: Option<Box<CodeFacts>>,
 }
@@ -309,6 +314,8 @@ impl UnitFacts {
             condition: None,
             commented: false,
             cost: UnitCost::new(model),
+            demands: demands::of_unit(model),
+            loops: turns::loops(model),
             code: CodeFacts::new(model),
         }
     }

@@ -29,11 +29,13 @@ pub mod parameters;
 pub mod priority;
 pub mod processing;
 pub mod program;
+pub mod ranges;
 pub mod reach;
 pub mod sequences;
 pub mod size;
 pub mod stuck;
 pub mod symbols;
+pub mod turns;
 pub mod used;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.

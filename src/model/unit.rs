@@ -377,17 +377,31 @@ pub enum LoopKind {
     Jump,
 }
 
+/// What a loop counts that counts by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counting {
+    /// `FOR`: from the first value to the last, in steps of 1.
+    Up { first: ExprId, last: ExprId },
+    /// `LOOP`: `left` is the accumulator before it is counted down; control comes to the label with `entry` in the
+    /// accumulator from above, and with `turn` on each turn.
+    Down { entry: ExprId, turn: ExprId, left: ExprId },
+}
+
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Loop {
     pub kind: LoopKind,
     /// The keyword, or the backward jump.
     pub keyword: TextRange,
+    /// The same, for facts.
+    pub anchor: u32,
     /// For WHILE: the condition to go on; for REPEAT: the condition to stop.
     pub condition: Option<ExprId>,
     pub condition_range: Option<TextRange>,
     /// FOR index.
     pub index: Option<ObjectId>,
     pub index_range: Option<TextRange>,
+    /// How a loop counts that counts by itself.
+    pub counting: Option<Counting>,
     /// Statements of the body.
     pub body: Range<u32>,
     /// Whether an EXIT, a jump or a return can leave it.
@@ -409,6 +423,25 @@ pub enum IndexKind {
     Constant(i64),
     /// An expression of several terms.
     Computed,
+}
+
+/// A number that has to lie in a range for an operation to work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Demand {
+    pub what: DemandKind,
+    pub value: ExprId,
+    /// Index of the statement that it is part of.
+    pub statement: u32,
+    pub path: ExprId,
+    pub anchor: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DemandKind {
+    /// It is added to the address of an object of PL7.
+    Index(ObjectId),
+    /// It divides.
+    Divisor,
 }
 
 /// A constant of a type whose exact value a rule asks for.
@@ -576,6 +609,10 @@ pub struct UnitModel {
     pub remarks: Vec<Remark>,
     /// Indexes of PL7 objects, in the order of the text.
     pub indexes: Vec<Index>,
+    /// Divisors, and the indexes of PL7 objects again, with their values; in the order of execution.
+    pub demands: Vec<Demand>,
+    /// Of each store, by its access: the version that it replaces. In the order of the accesses.
+    pub replaced: Vec<(u32, u32)>,
     /// Durations, as written.
     pub constants: Vec<Constant>,
     pub oddities: Vec<Oddity>,

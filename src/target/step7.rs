@@ -37,6 +37,9 @@ pub fn block_numbers(kind: BlockKind) -> Option<Range> {
     }
 }
 
+/// Watchdog of the cycle of the CPU that the manual describes, in milliseconds.
+pub const WATCHDOG_MS: Limit = Limit::new(150, "S7:74");
+
 /// What one CPU has. `None` where no source tells.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Cpu {
@@ -79,7 +82,7 @@ pub static CPUS: &[Cpu] = &[
         name: "CPU 314",
         call_depth: Some(Limit::new(8, "S7:107")),
         retentive_bytes: Some(Range::new(0, 15, "S7:115")),
-        watchdog_ms: Some(Limit::new(150, "S7:74")),
+        watchdog_ms: Some(WATCHDOG_MS),
         accumulators: Some(Limit::new(2, "S7:348")),
         accumulator_bits: Some(Limit::new(32, "S7:348")),
         memory_bytes: Some(Limit::new(256, GENERAL)),

@@ -12,8 +12,8 @@ use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Object};
 use crate::model::unit::{
-    Access, Call, DeadCause, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement, StatementKind,
-    UnitModel, Unreachable,
+    Access, Call, DeadCause, Demand, DemandKind, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement,
+    StatementKind, UnitModel, Unreachable,
 };
 use crate::syntax::Language;
 
@@ -88,6 +88,8 @@ impl Builder {
             symbols: Vec::new(),
             remarks: Vec::new(),
             indexes: Vec::new(),
+            demands: Vec::new(),
+            replaced: Vec::new(),
             constants: Vec::new(),
             oddities: Vec::new(),
             unreachable: Vec::new(),
@@ -170,6 +172,13 @@ impl Builder {
         if self.model.computes.is_none() {
             self.model.computes = Some(self.anchor(range));
         }
+    }
+
+    /// Notes a number that has to lie in a range.
+    pub(super) fn demand(&mut self, what: DemandKind, value: ExprId, range: TextRange) {
+        let anchor = self.anchor(range);
+        let statement = index(self.model.statements.len());
+        self.model.demands.push(Demand { what, value, statement, path: self.path, anchor });
     }
 
     /// A place that facts can name.
@@ -332,6 +341,8 @@ impl Builder {
 
     /// A word, table or text takes a value.
     pub(super) fn store(&mut self, object: ObjectId, value: ExprId, at: TextRange, range: TextRange) {
+        let (replaced, _) = self.version(object);
+        self.model.replaced.push((index(self.model.accesses.len()), replaced));
         let access = self.written(object, Mode::Store, true, at);
         self.statement(StatementKind::Store { access, value }, range);
     }
@@ -434,6 +445,8 @@ impl Builder {
                 self.model.loops.push(Loop {
                     kind: LoopKind::Jump,
                     keyword: at,
+                    anchor,
+                    counting: None,
                     condition: Some(when),
                     condition_range: None,
                     index: None,

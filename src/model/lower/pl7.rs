@@ -12,8 +12,8 @@ use crate::model::literal::{self, Value};
 use crate::model::object::{self, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
 use crate::model::pl7_kinds;
 use crate::model::unit::{
-    Actual, Call, Callee, Constant, DeadCause, Formal, Given, Index, IndexKind, Leave, Mode, OddityKind, Pin, Slot,
-    StatementKind,
+    Actual, Call, Callee, Constant, DeadCause, DemandKind, Formal, Given, Index, IndexKind, Leave, Mode, OddityKind,
+    Pin, Slot, StatementKind,
 };
 use crate::syntax::pl7::ast::{self, BinOp, Expr, UnaryOp};
 use crate::syntax::pl7::functions::{self, Function};
@@ -106,9 +106,10 @@ impl Pl7 {
             return (id, range);
         }
         let is_direct = index.is_none();
+        let mut added = None;
         let parsed = match index {
             Some(index) => {
-                self.index(index);
+                added = self.index(index);
                 object::pl7::parse_indexed(&address, it.suffix().as_deref()).map(|mut object| {
                     object.text = it.syntax().text().into_owned().split_whitespace().collect::<String>().into();
                     object
@@ -120,30 +121,32 @@ impl Pl7 {
             Ok(object) => self.b.object(object),
             Err(error) => return (self.address_error(error, range, &address), range),
         };
+        if let Some(value) = added {
+            self.b.demand(DemandKind::Index(id), value, range);
+        }
         if is_direct {
             self.b.model.addresses.insert(address.into(), id);
         }
         (id, range)
     }
 
-    /// Records an index and its reads.
-    fn index(&mut self, index: ast::Index<'_>) {
-        let Some(expr) = index.expr() else { return };
-        let what = match self.place(&expr) {
-            Some((object, range)) => {
-                self.read(object, range);
-                IndexKind::Object(object)
-            }
+    /// Records an index and its reads, and gives its value.
+    fn index(&mut self, index: ast::Index<'_>) -> Option<ExprId> {
+        let expr = index.expr()?;
+        let (what, value) = match self.place(&expr) {
+            Some((object, range)) => (IndexKind::Object(object), self.read(object, range)),
             None => {
                 let (value, _) = self.expr(&expr);
-                match *self.b.exprs().get(value) {
+                let what = match *self.b.exprs().get(value) {
                     crate::model::expr::Expr::Int(value) => IndexKind::Constant(value),
                     _ => IndexKind::Computed,
-                }
+                };
+                (what, value)
             }
         };
         let anchor = self.b.anchor(expr.syntax().text_range());
         self.b.model.indexes.push(Index { what, anchor });
+        Some(value)
     }
 
     /// A symbol or an item of a DFB instance.
@@ -151,9 +154,7 @@ impl Pl7 {
         let range = it.syntax().text_range();
         let path = it.path();
         let indexed = it.index();
-        if let Some(index) = indexed {
-            self.index(index);
-        }
+        let added = indexed.and_then(|it| self.index(it));
         let own = dfb::object(&self.items, &path, indexed.is_some());
         if self.is_pl7_2()
             && let Some(error) = super::pl72::mistaken_name(&path)
@@ -179,7 +180,11 @@ impl Pl7 {
                 object.ty = Type::Bool;
             }
         }
-        (self.b.object(object), range)
+        let id = self.b.object(object);
+        if let Some(value) = added {
+            self.b.demand(DemandKind::Index(id), value, range);
+        }
+        (id, range)
     }
 
     pub(super) fn ty(&self, object: ObjectId) -> Type {
@@ -318,6 +323,9 @@ impl Pl7 {
         let Some(op) = it.op() else { return self.optional(None) };
         if matches!(op, BinOp::Add | BinOp::Sub | BinOp::Mul | BinOp::Div) {
             self.b.computes(it.syntax().text_range());
+        }
+        if let (BinOp::Div | BinOp::Rem, Some(divisor)) = (op, it.rhs()) {
+            self.b.demand(DemandKind::Divisor, b, divisor.syntax().text_range());
         }
         let exprs = self.b.exprs();
         let arithmetic = |operator| (operator, number);

@@ -6,7 +6,7 @@ use smol_str::SmolStr;
 use super::pl7::{Kind, Pl7};
 use crate::model::expr::{Comparison, ExprId, ObjectId, Operator};
 use crate::model::object::{AddressError, AddressErrorKind, Class, Object, Type, pl72};
-use crate::model::unit::{Index, IndexKind, OddityKind, Pin};
+use crate::model::unit::{DemandKind, Index, IndexKind, OddityKind, Pin};
 use crate::syntax::AstNode as _;
 use crate::syntax::pl7::ast::{AssignStmt, BinExpr, BinOp, CallExpr, Expr};
 use crate::target::pl72::{ASCII_WORDS, BIT_STRING, Operand, Operation, TRANSFERS};
@@ -197,6 +197,9 @@ impl Pl7 {
         };
         if !matches!(operator, Operator::And | Operator::Or | Operator::Xor) {
             self.b.computes(it.syntax().text_range());
+        }
+        if matches!(operator, Operator::Div | Operator::Rem) {
+            self.b.demand(DemandKind::Divisor, rhs.value, rhs.range);
         }
         self.b.exprs().binary(operator, lhs.value, rhs.value)
     }

@@ -10,7 +10,7 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs};
 use crate::model::object::Rights;
-use crate::model::unit::{DeadCause, Fork, Hollow, HollowKind, Leave, Loop, LoopKind, StatementKind};
+use crate::model::unit::{Counting, DeadCause, Fork, Hollow, HollowKind, Leave, Loop, LoopKind, StatementKind};
 use crate::syntax::pl7::ast::{self, Stmt};
 use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 
@@ -137,9 +137,12 @@ impl Lowering {
 
     fn open_loop(&mut self, kind: LoopKind, keyword: TextRange) -> u32 {
         let first = index(self.pl7.b.model.statements.len());
+        let anchor = self.pl7.b.anchor(keyword);
         self.pl7.b.open_loop(Loop {
             kind,
             keyword,
+            anchor,
+            counting: None,
             condition: None,
             condition_range: None,
             index: None,
@@ -188,9 +191,7 @@ impl Lowering {
     fn for_statement(&mut self, it: &ast::ForStmt) {
         let before = self.pl7.b.path();
         let start = it.start().map(|it| self.pl7.expr(&it));
-        if let Some(end) = it.end() {
-            self.pl7.expr(&end);
-        }
+        let end = it.end().map(|it| self.pl7.expr(&it));
         let place = it.index().and_then(|it| self.pl7.place(&it));
         if let Some((object, at)) = place {
             // Of an index that no program may write, rule T002 speaks: there is no write besides.
@@ -204,6 +205,7 @@ impl Lowering {
         if let (Some((object, at)), Some(it)) = (place, self.pl7.b.model.loops.get_mut(id as usize)) {
             it.index = Some(object);
             it.index_range = Some(at);
+            it.counting = start.zip(end).map(|(first, last)| Counting::Up { first: first.0, last: last.0 });
         }
         // The body may not run at all.
         let runs = self.pl7.b.exprs().opaque();

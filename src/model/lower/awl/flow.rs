@@ -46,7 +46,9 @@ impl Machine {
     pub(super) fn label(&mut self, text: &SmolStr, range: TextRange) {
         let reachable = self.b.is_reachable();
         self.b.label(text.clone(), text.clone(), range);
-        if let Some(arrival) = self.arrivals.remove(text) {
+        let arrival = self.arrivals.remove(text);
+        let is_entered = reachable || arrival.is_some();
+        if let Some(arrival) = arrival {
             if reachable { self.meet(arrival) } else { self.become_arrival(arrival) }
         }
         if self.back_targets.contains(text) {
@@ -54,8 +56,13 @@ impl Machine {
             let value = self.b.exprs().opaque();
             self.rlo = Rlo { state: RloState::Known, value };
             self.or_base = None;
+            let entry = self.accumulators[0].value.filter(|_| is_entered);
             self.keep_accumulators();
-            self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];
+            let turn = self.b.exprs().opaque();
+            self.accumulators = [Accumulator::computed(turn), Accumulator::unknown()];
+            if let Some(entry) = entry {
+                self.counted.insert(text.clone(), (entry, turn));
+            }
         }
     }
 

@@ -23,7 +23,7 @@ use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, Operator};
 use crate::model::layout::{Elementary, Layout};
-use crate::model::unit::{Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, Pulse, StatementKind};
+use crate::model::unit::{Counting, Hollow, HollowKind, LoopKind, Mode, OddityKind, Pin, Pulse, StatementKind};
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::{ArithOp, Conversion, JumpIf, LogicOp, NumberType, Op, Shift};
 use crate::syntax::{AstNode as _, Language, SyntaxElement, SyntaxKind, SyntaxNode};
@@ -31,7 +31,7 @@ use crate::target;
 
 use accumulators::{Accumulator, Load, comparison};
 use calls::{OpenBlock, instance_of};
-use flow::{Arrival, back_targets, label};
+use flow::{Arrival, back_targets, label, label_operand};
 use operands::Operand;
 use rlo::{LogicString, Nest, Rlo, RloState};
 
@@ -51,6 +51,7 @@ pub fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitMo
         br: Exprs::FALSE,
         open: OpenBlock::default(),
         arrivals: FxHashMap::default(),
+        counted: FxHashMap::default(),
         back_targets: FxHashSet::default(),
         operands: FxHashMap::default(),
         declared: FxHashMap::default(),
@@ -90,6 +91,8 @@ struct Machine {
     br: ExprId,
     open: OpenBlock,
     arrivals: FxHashMap<SmolStr, Arrival>,
+    /// Of labels that jumps lead back to: what accumulator 1 holds when control comes from above, and on each turn.
+    counted: FxHashMap<SmolStr, (ExprId, ExprId)>,
     back_targets: FxHashSet<SmolStr>,
     operands: FxHashMap<SmolStr, Operand>,
     /// Names that the block declares, in lower case.
@@ -488,13 +491,16 @@ impl Machine {
                 self.jump_list = true;
             }
             Op::Loop => {
+                let left = self.accumulator(0);
                 self.opaque_result();
                 let when = self.b.exprs().opaque();
                 let before = self.b.model.loops.len();
                 self.jump(instr, when, range);
+                let counted = label_operand(instr).and_then(|it| self.counted.get(&it.0).copied());
                 // LOOP counts down to 0, which a plain jump does not.
                 for it in &mut self.b.model.loops[before..] {
                     it.kind = LoopKind::For;
+                    it.counting = counted.map(|(entry, turn)| Counting::Down { entry, turn, left });
                 }
             }
         }

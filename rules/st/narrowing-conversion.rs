@@ -1,0 +1,64 @@
+//! T010: a word takes a double word, of which it keeps the low half.
+
+use rowan::TextRange;
+use rustc_hash::FxHashMap;
+
+use crate::analysis::ranges::Ranges;
+use crate::lint::{Sink, UnitCx};
+use crate::model::expr::{Expr, ExprId, Operator};
+use crate::model::object::Type;
+use crate::model::pl7_kinds::Kind;
+use crate::model::unit::StatementKind;
+use crate::syntax::pl7::ast::AssignStmt;
+use crate::syntax::{AstNode as _, SyntaxKind};
+
+/// What fits a word with its sign, and what fits its 16 bits.
+const WORDS: (i64, i64) = (i16::MIN as i64, i16::MAX as i64);
+const PATTERNS: (i64, i64) = (0, u16::MAX as i64);
+
+pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
+    let assignments = cx.nodes(SyntaxKind::AssignStmt).filter_map(AssignStmt::cast);
+    let mut candidates = assignments.filter_map(|it| {
+        let (target, value) = (it.target()?, it.value()?);
+        let is_word = cx.kinds().type_of(target) == Some(Type::Word);
+        let kind = cx.kinds().of(value);
+        let is_wide = is_word && matches!(kind, Kind::Double | Kind::Integer);
+        let places = [it.syntax(), target.syntax(), value.syntax()].map(|it| it.text_range());
+        is_wide.then_some((kind, places))
+    });
+    let Some(first) = candidates.next() else { return };
+    let model = cx.model;
+    let stores: FxHashMap<TextRange, (u32, ExprId)> = (0..)
+        .zip(&model.statements)
+        .filter_map(|(at, it)| match it.kind {
+            StatementKind::Store { value, .. } => Some((it.range, (at, value))),
+            _ => None,
+        })
+        .collect();
+    let ranges = Ranges::new(model);
+    for (kind, [statement, target, value]) in std::iter::once(first).chain(candidates) {
+        let Some(&(at, expr)) = stores.get(&statement) else { continue };
+        let Some(path) = model.statements.get(at as usize).map(|it| it.path) else { continue };
+        let Some(span) = ranges.of(expr, at, path).map(|it| it.span) else { continue };
+        // The result of some functions is a word or a double word, nothing tells which.
+        if kind == Kind::Integer && !span.is_one() {
+            continue;
+        }
+        // `AND` and `SHR` give patterns: all that counts is that no bit is lost. So it is with constants.
+        let of_bits = match model.exprs.get(expr) {
+            Expr::Binary(Operator::And, ..) | Expr::Int(_) => true,
+            Expr::Call(name, _) => name == "SHR",
+            _ => false,
+        };
+        if span.is_within(WORDS.0, WORDS.1) || of_bits && span.is_within(PATTERNS.0, PATTERNS.1) {
+            continue;
+        }
+        let (target, text) = (cx.text_of(target), cx.text_of(value));
+        let report = sink.report(value, format!("`{target}` takes the low word of `{text}`, which may need 32 bits"));
+        if span.is_one() {
+            report.label(format!("this is {}", span.first));
+        } else if span.tells_first && span.tells_last {
+            report.label(format!("this is {} to {}", span.first, span.last));
+        }
+    }
+}
