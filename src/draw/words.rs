@@ -170,7 +170,7 @@ impl Writer<'_, '_> {
                     Operator::Xor => (" XOR ", 5),
                 };
                 // What binds as strongly is read from the left; operations on words of one kind alone need no parentheses.
-                let is_same = |it: ExprId| matches!(model.exprs.get(it), Expr::Binary(of, ..) if of == operator);
+                let is_same = |it: ExprId| matches!(exprs.get(it), Expr::Binary(of, ..) if of == operator);
                 let is_logic = matches!(operator, Operator::And | Operator::Or | Operator::Xor);
                 let left = own + u8::from(is_logic && !is_same(*a));
                 let right = own + u8::from(!is_logic || !is_same(*b));
