@@ -51,10 +51,6 @@ const common = {
         match: `(?i)${START}(%?SR\\d+)${END}`,
         name: 'entity.name.function.plc',
       },
-      {
-        match: `(?i)${START}(${oneOf(words('pl7-functions'))})(?=${BLANK}*\\()`,
-        name: 'support.function.plc',
-      },
       keywords('support.function.plc', words('pl7-functions').filter((it) => it.length > 2)),
     ],
   },

@@ -144,6 +144,7 @@ export const step7 = {
           match: `(?i)${START}(?:D[BI]${BLANK}*\\d+${BLANK}*\\.${BLANK}*)?[A-Z]{1,3}${BLANK}*\\d+(?:\\.\\d+)?${END}`,
         },
         { name: 'constant.language.plc', match: `(?i)${START}(TRUE|FALSE)${END}` },
+        { name: 'storage.type.plc', match: `(?i)${START}VOID${END}` },
         { name: 'constant.numeric.plc', match: `(?<![\\p{L}_])[+-]?\\d[\\d_]*(?:\\.\\d+)?(?:[eE][+-]?\\d+)?` },
         { name: 'keyword.operator.plc', match: ':=|[=<>]=?|<>|[+*/-]' },
       ],
@@ -227,6 +228,11 @@ export const step5 = {
         { name: 'variable.other.symbol.plc', match: `(?<=[ \\t])-${NAME}[\\p{L}\\p{N}_./-]*` },
         { name: 'variable.parameter.formal.plc', match: `(?<==)${BLANK}*${NAME}` },
         keywords('keyword.control.instruction.plc', step5Instructions.filter((it) => /^[\p{L}]{2}/u.test(it))),
+        // Before an operand on a line that several instructions share.
+        {
+          name: 'keyword.control.instruction.plc',
+          match: `(?i)(?<=[ \\t])${oneOf(step5Instructions.filter((it) => /^\p{L}$/u.test(it)))}(?=${BLANK}+\\p{L})`,
+        },
         { name: 'constant.numeric.plc', match: `(?<![\\p{L}_])[+-]?\\d[\\d_]*(?:\\.\\d+)?` },
         { name: 'keyword.operator.plc', match: '!=|><|[=<>]=?' },
       ],

@@ -14,7 +14,7 @@ const cases = {
     ['      U(    ', ['U(: keyword.control.instruction']],
     ['      =     DB5.DBX 2.0', ['=: keyword.control.instruction', 'DB5.DBX 2.0: variable.other.address']],
     ['      T     #speed', ['T: keyword.control.instruction', '#speed: variable.parameter.local']],
-    ['FUNCTION FC 1 : VOID', ['FUNCTION: keyword.other.block', 'FC 1: entity.name.function']],
+    ['FUNCTION FC 1 : VOID', ['FUNCTION: keyword.other.block', 'FC 1: entity.name.function', 'VOID: storage.type']],
     ['TITLE = U E 0.0', ['TITLE: keyword.other', '=: keyword.operator', 'U E 0.0: string.unquoted.title']],
     ['VAR_INPUT\nspeed : INT := 5;\nEND_VAR', ['VAR_INPUT: keyword.other.declaration', 'speed: variable.parameter', 'INT: storage.type', ':=: keyword.operator', '5: constant.numeric', 'END_VAR: keyword.other.declaration']],
     ['(* U\nE *)', ['(* U: comment.block', 'E *): comment.block']],

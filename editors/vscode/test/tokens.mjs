@@ -45,7 +45,7 @@ export async function tokens(language, text) {
   const grammar = await (await open()).loadGrammar(scopeName);
   let state = INITIAL;
   return text.split(/\r\n|\r|\n/).map((line) => {
-    const result = grammar.tokenizeLine(line, state, 2000);
+    const result = grammar.tokenizeLine(line, state, 20000);
     if (result.stoppedEarly) {
       throw new Error(`too slow: ${line}`);
     }
