@@ -26,8 +26,8 @@ const pushing = (it) => {
   return it;
 };
 
-test('findings are pulled, for documents and for the workspace', async () => {
-  const session = await Session.start(['programs/recettes']);
+test('findings are pulled, for documents and for the workspace', async (t) => {
+  const session = await Session.start(t, ['programs/recettes']);
   const { capabilities } = session.result;
   assert.equal(capabilities.positionEncoding, 'utf-16');
   assert.equal(capabilities.diagnosticProvider.workspaceDiagnostics, true);
@@ -53,8 +53,8 @@ test('findings are pulled, for documents and for the workspace', async () => {
   assert.equal(session.said, '');
 });
 
-test('findings are pushed, and a quick-fix mends one', async () => {
-  const session = await Session.start(['programs/recettes'], pushing);
+test('findings are pushed, and a quick-fix mends one', async (t) => {
+  const session = await Session.start(t, ['programs/recettes'], pushing);
   const text = await session.open(FILE, 'plc-pl7-st');
   const before = await session.findings(FILE, (it) => it.length > 5);
   assert.deepEqual(lines(FILE, before).sort(), checked(session.folder).filter((it) => it.startsWith(FILE)));
@@ -77,8 +77,8 @@ test('findings are pushed, and a quick-fix mends one', async () => {
   assert.equal(await session.stop(), 0);
 });
 
-test('what stands at a place is told, found and completed', async () => {
-  const session = await Session.start(['programs/recettes', 'programs/convoyeur-s7']);
+test('what stands at a place is told, found and completed', async (t) => {
+  const session = await Session.start(t, ['programs/recettes', 'programs/convoyeur-s7']);
   const text = await session.open(FILE, 'plc-pl7-st');
   const here = { ...session.document(FILE), position: place(text, '%M0:=TRUE', 1) };
   const hover = await session.ask(lsp.HoverRequest, here);
@@ -117,8 +117,8 @@ test('what stands at a place is told, found and completed', async () => {
   assert.equal(await session.stop(), 0);
 });
 
-test('a cancelled request is refused and the session goes on', async () => {
-  const session = await Session.start(['programs/recettes']);
+test('a cancelled request is refused and the session goes on', async (t) => {
+  const session = await Session.start(t, ['programs/recettes']);
   await session.open(FILE, 'plc-pl7-st');
   const all = await session.ask(lsp.WorkspaceDiagnosticRequest, { previousResultIds: [] });
   const previousResultIds = all.items.map((it) => ({ uri: it.uri, value: it.resultId }));
@@ -132,12 +132,11 @@ test('a cancelled request is refused and the session goes on', async () => {
   assert.equal(await session.stop(), 0);
 });
 
-test('a server whose client dies ends', async () => {
-  const session = await Session.start(['programs/recettes'], pushing);
+test('a server whose client dies ends', async (t) => {
+  const session = await Session.start(t, ['programs/recettes'], pushing);
   await session.open(FILE, 'plc-pl7-st');
   session.server.stdin.destroy();
   session.server.stdout.destroy();
   assert.equal(await session.ended, 1);
   assert.equal(session.said, '');
-  session.close();
 });

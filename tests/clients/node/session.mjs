@@ -40,12 +40,14 @@ const capabilities = {
 };
 
 export class Session {
-  static async start(programs, change = (it) => it) {
+  /** A session that ends with the test `t`. */
+  static async start(t, programs, change = (it) => it) {
     const folder = realpathSync(mkdtempSync(join(tmpdir(), 'plclint-')));
     for (const it of programs) {
       cpSync(join(root, 'corpus', it), folder, { recursive: true });
     }
     const session = new Session(folder);
+    t.after(() => session.close());
     const uri = pathToFileURL(folder).href;
     const { connection } = session;
     session.result = await connection.sendRequest(lsp.InitializeRequest.type, {
@@ -128,9 +130,7 @@ export class Session {
   async stop() {
     await this.connection.sendRequest(lsp.ShutdownRequest.type);
     await this.connection.sendNotification(lsp.ExitNotification.type);
-    const code = await this.ended;
-    this.close();
-    return code;
+    return this.ended;
   }
 
   close() {

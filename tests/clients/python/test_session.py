@@ -16,7 +16,7 @@ from pytest_lsp import ClientServerConfig, LanguageClient, client_capabilities
 ROOT = Path(__file__).resolve().parents[3]
 PLCLINT = os.environ["PLCLINT"]
 FILE = "recettes.st"
-PATIENCE = 60
+PATIENCE = 15
 
 
 @pytest.fixture
@@ -25,9 +25,23 @@ def folder(tmp_path):
     return tmp_path / "recettes"
 
 
+def make_client() -> LanguageClient:
+    """The client with the requests of the server that it does not know by itself."""
+    client = pytest_lsp.make_test_lsp_client()
+    for method in (
+        lsp.CLIENT_REGISTER_CAPABILITY,
+        lsp.WORKSPACE_DIAGNOSTIC_REFRESH,
+        lsp.WORKSPACE_CODE_LENS_REFRESH,
+        lsp.WORKSPACE_INLAY_HINT_REFRESH,
+        lsp.WORKSPACE_SEMANTIC_TOKENS_REFRESH,
+    ):
+        client.feature(method)(lambda *_: None)
+    return client
+
+
 @pytest_lsp.fixture(
     params=["visual_studio_code", "neovim", "emacs"],
-    config=ClientServerConfig(server_command=[PLCLINT, "server"]),
+    config=ClientServerConfig(server_command=[PLCLINT, "server"], client_factory=make_client),
 )
 async def client(lsp_client: LanguageClient, request, folder):
     uri = folder.as_uri()
