@@ -30,7 +30,6 @@ def make_client() -> LanguageClient:
     client = pytest_lsp.make_test_lsp_client()
     for method in (
         lsp.CLIENT_REGISTER_CAPABILITY,
-        lsp.WORKSPACE_DIAGNOSTIC_REFRESH,
         lsp.WORKSPACE_CODE_LENS_REFRESH,
         lsp.WORKSPACE_INLAY_HINT_REFRESH,
         lsp.WORKSPACE_SEMANTIC_TOKENS_REFRESH,
@@ -164,7 +163,7 @@ async def test_a_quick_fix_mends_its_finding(client: LanguageClient):
 
 @pytest.mark.asyncio
 async def test_memory_does_not_grow_with_edits(client: LanguageClient):
-    """After a thousand edits more, the process holds about what it held after the first thousand."""
+    """After as many edits more, the process holds about what it held after the first ones."""
     uri, text = open_document(client)
     pieces = ["\n", "SET %M1;\n", "%L20: ", "(*", "*)", "IF ", "! "]
     numbers = random.Random(4)
@@ -183,8 +182,8 @@ async def test_memory_does_not_grow_with_edits(client: LanguageClient):
         pages = Path(f"/proc/{client._server.pid}/statm").read_text().split()[1]
         return int(pages) * os.sysconf("SC_PAGE_SIZE")
 
-    await edit(1000, 2)
+    await edit(300, 2)
     before = resident()
-    await edit(1000, 2000)
+    await edit(300, 2000)
     after = resident()
     assert after < before * 1.25 + (16 << 20), f"{before >> 20} MB, then {after >> 20} MB"
