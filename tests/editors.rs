@@ -34,8 +34,8 @@ fn words_are_those_of_the_lexers() {
 /// Extensions that plclint considers and that editors leave to others: of symbol tables and plain text, whose names mean
 /// other things as a rule, and of what is not read.
 const OTHERS: [&str; 21] = [
-    "txt", "sdf", "asc", "seq", "dif", "db", "udt", "ufb", "stx", "scl", "s5d", "xef", "zef", "xst", "xil", "xld", "xsf",
-    "xbd", "xdb", "xdd", "xsy",
+    "txt", "sdf", "asc", "seq", "dif", "db", "udt", "ufb", "stx", "scl", "s5d", "xef", "zef", "xst", "xil", "xld",
+    "xsf", "xbd", "xdb", "xdd", "xsy",
 ];
 
 fn programs() -> BTreeSet<String> {
@@ -57,7 +57,11 @@ fn all_editors_know_the_extensions_of_programs() {
     assert_eq!(quoted(&read("editors/neovim/init.lua"), "local extensions = {", "}", '\''), expected, "Neovim");
     let both: BTreeSet<String> = expected.iter().flat_map(|it| [it.clone(), it.to_uppercase()]).collect();
     assert_eq!(quoted(&read("editors/helix/languages.toml"), "file-types = [", "]", '"'), both, "Helix");
-    assert_eq!(quoted(&read("editors/emacs/plclint.el"), "defconst plclint-extensions\n  '(", ")", '"'), expected, "Emacs");
+    assert_eq!(
+        quoted(&read("editors/emacs/plclint.el"), "defconst plclint-extensions\n  '(", ")", '"'),
+        expected,
+        "Emacs"
+    );
     let package: Value = serde_json::from_str(&read("editors/vscode/package.json")).unwrap();
     let languages = package["contributes"]["languages"].as_array().unwrap();
     let extensions: Vec<String> = languages
