@@ -124,6 +124,7 @@ const code = {
         3: { name: 'punctuation.separator.label.plc' },
       },
     },
+    { match: `(?i)${START}L\\d+${END}`, name: 'entity.name.label.plc' },
     keywords('keyword.other.rung.plc', [...rungFrames, 'END_BLOCK']),
     { include: '#label' },
     keywords('keyword.control.element.plc', words('pl7-ladder')),

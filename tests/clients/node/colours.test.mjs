@@ -51,7 +51,7 @@ test('grammars agree with the server on the corpus', async (t) => {
     }
     assert.ok(all > 100, kind);
     const share = wrong.length / all;
-    assert.ok(share <= (kind === 'comment' ? 0 : 0.04), `${kind}: ${wrong.length} of ${all}: ${wrong.slice(0, 20).join('\n')}`);
+    assert.ok(share <= (kind === 'comment' ? 0 : 0.06), `${kind}: ${wrong.length} of ${all}: ${wrong.slice(0, 20).join('\n')}`);
   }
   assert.equal(await session.stop(), 0);
 });
