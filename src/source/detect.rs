@@ -251,6 +251,11 @@ fn extension(path: Option<&Path>) -> Extension {
         .map_or(Extension::Other, |&(_, meaning)| meaning)
 }
 
+/// The extensions of the files that are considered in a folder, in lower case.
+pub fn extensions() -> impl Iterator<Item = &'static str> {
+    EXTENSIONS.iter().map(|it| it.0)
+}
+
 /// Whether a file found in a folder may be part of a controller program, by its extension.
 pub fn has_plc_extension(path: &Path) -> bool {
     extension(Some(path)) != Extension::Other || symlist::is_table(path)

@@ -17,6 +17,7 @@ pub mod pl7;
 mod pl72;
 pub mod step5;
 pub mod symbol_table;
+pub mod words;
 pub mod xref;
 
 pub use kind::SyntaxKind;

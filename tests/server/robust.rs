@@ -119,6 +119,155 @@ fn bytes_that_are_no_message_do_not_end_a_session() {
     }
 }
 
+/// Addresses of nothing that is open, of nothing that is there, and of nothing at all.
+const STRANGE: [&str; 9] = [
+    "file:///no/such/folder/a.awl",
+    "file:///",
+    "file://host/share/a.awl",
+    "untitled:Untitled-1",
+    "https://example.com/a.awl",
+    "plclint-rule:///W001/single-write.md",
+    "data:,a",
+    "no address",
+    "",
+];
+
+#[test]
+fn files_that_nobody_knows_do_no_harm() {
+    let mut client = Client::start(pulling(), &[("a.awl", TEXT)]);
+    let place = json!({ "line": 3, "character": 14 });
+    let all = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 9, "character": 0 } });
+    let methods = [
+        "hover",
+        "definition",
+        "references",
+        "documentHighlight",
+        "completion",
+        "prepareRename",
+        "rename",
+        "documentSymbol",
+        "foldingRange",
+        "semanticTokens/full",
+        "codeLens",
+        "inlayHint",
+        "codeAction",
+        "diagnostic",
+    ];
+    for uri in STRANGE {
+        for method in methods {
+            let params = json!({
+                "textDocument": { "uri": uri }, "position": place, "range": all, "newName": "b",
+                "context": { "diagnostics": [], "includeDeclaration": true, "triggerKind": 1 },
+            });
+            match client.try_ask(&format!("textDocument/{method}"), params) {
+                Ok(Value::Null) => {}
+                Ok(Value::Array(items)) => assert!(items.is_empty(), "{method} of {uri}: {items:?}"),
+                Ok(answer) => assert_eq!(answer["items"], json!([]), "{method} of {uri}"),
+                // Not an address, or nothing that could be renamed.
+                Err(code) => assert!([-32602, -32803].contains(&code), "{method} of {uri}: {code}"),
+            }
+        }
+        let document = json!({ "uri": uri, "version": 3 });
+        client.notify("textDocument/didClose", json!({ "textDocument": document }));
+        client.notify(
+            "textDocument/didChange",
+            json!({ "textDocument": document, "contentChanges": [{ "text": TEXT }] }),
+        );
+        client.notify("textDocument/didSave", json!({ "textDocument": document }));
+        client.notify("workspace/didChangeWatchedFiles", json!({ "changes": [{ "uri": uri, "type": 1 }] }));
+        client.notify("workspace/didChangeWatchedFiles", json!({ "changes": [{ "uri": uri, "type": 3 }] }));
+        let folder = json!({ "uri": uri, "name": "strange" });
+        let event = json!({ "added": [], "removed": [folder] });
+        client.notify("workspace/didChangeWorkspaceFolders", json!({ "event": event }));
+        if uri.is_empty() || uri.contains("a.awl") {
+            let event = json!({ "added": [folder], "removed": [folder, folder] });
+            client.notify("workspace/didChangeWorkspaceFolders", json!({ "event": event }));
+        }
+        assert_eq!(client.pull("a.awl"), [] as [&str; 0]);
+    }
+    client.stop();
+}
+
+#[test]
+fn the_last_text_counts_whatever_its_version() {
+    let mut client = Client::start(able(), &[("a.awl", TEXT)]);
+    let uri = client.uri("a.awl");
+    client.open("a.awl", TEXT);
+    let wrong = TEXT.replace("U     E", "U     (((");
+    for (version, text) in [(9, wrong.as_str()), (3, TEXT), (3, &wrong), (-1, TEXT), (i32::MAX, &wrong)] {
+        let document = json!({ "uri": uri, "version": version });
+        client.notify(
+            "textDocument/didChange",
+            json!({ "textDocument": document, "contentChanges": [{ "text": text }] }),
+        );
+        let has_findings = text != TEXT;
+        client.wait(|it| it.pushed.get("a.awl").is_some_and(|it| it.is_empty() != has_findings));
+    }
+    // One that is no number changes nothing.
+    for version in [json!("7"), json!(1.5), json!(1_u64 << 40), Value::Null] {
+        let document = json!({ "uri": uri, "version": version });
+        client
+            .notify("textDocument/didChange", json!({ "textDocument": document, "contentChanges": [{ "text": "" }] }));
+    }
+    let symbols = client.ask("textDocument/documentSymbol", json!({ "textDocument": { "uri": uri } }));
+    assert!(symbols.as_array().is_some_and(|it| !it.is_empty()), "the text is there");
+    // Opened again without having been closed, closed twice.
+    client.open("a.awl", TEXT);
+    client.wait(|it| it.pushed("a.awl").is_empty());
+    client.close("a.awl");
+    client.close("a.awl");
+    client.stop();
+}
+
+#[test]
+fn a_client_that_dies_while_all_work_is_not_waited_for() {
+    for n in 0..10 {
+        let mut client = Client::start(pulling(), &[("a.awl", TEXT)]);
+        client.open("a.awl", TEXT);
+        for edit in 0..n * 5 {
+            client.replace("a.awl", &TEXT.replace("FC 1", &format!("FC {edit}")));
+            client.post("workspace/diagnostic", json!({ "previousResultIds": [] }));
+            let params = json!({ "textDocument": client.document("a.awl") });
+            client.post("textDocument/semanticTokens/full", params);
+        }
+        assert_eq!(client.die(), Ended::Abruptly);
+    }
+}
+
+/// What becomes of the process when its client has sent this and gone.
+fn left_with(input: &str, cuts_output: bool) -> Option<i32> {
+    use std::io::Write as _;
+    use std::process::{Command, Stdio};
+    let mut command = Command::new(env!("CARGO_BIN_EXE_plclint"));
+    command.arg("server").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut server = command.spawn().unwrap();
+    if cuts_output {
+        drop(server.stdout.take());
+    }
+    let mut to = server.stdin.take().unwrap();
+    to.write_all(input.as_bytes()).unwrap();
+    drop(to);
+    let output = server.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(said, "", "nobody is there to read it");
+    output.status.code()
+}
+
+#[test]
+fn the_process_ends_with_its_client() {
+    let frame = |it: Value| format!("Content-Length: {}\r\n\r\n{it}", it.to_string().len());
+    let start = frame(json!({ "jsonrpc": "2.0", "id": 1, "method": "initialize", "params": { "capabilities": {} } }));
+    let item = json!({ "uri": "file:///a.awl", "languageId": "plc", "version": 1, "text": TEXT.repeat(2000) });
+    let open = frame(json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen", "params": { "textDocument": item } }));
+    let whole = format!("{start}{open}");
+    for cuts_output in [false, true] {
+        assert_eq!(left_with("", cuts_output), Some(1));
+        assert_eq!(left_with(&start, cuts_output), Some(1));
+        assert_eq!(left_with(&whole, cuts_output), Some(1));
+        assert_eq!(left_with(&whole[..whole.len() - 7], cuts_output), Some(1));
+    }
+}
+
 #[derive(Clone, Default)]
 struct Shared(std::sync::Arc<std::sync::Mutex<Vec<u8>>>);
 

@@ -40,6 +40,8 @@ enum BlockKind {
 }
 
 impl BlockKind {
+    const ALL: [Self; 5] = [Self::Organization, Self::Function, Self::FunctionBlock, Self::Data, Self::Type];
+
     fn of(word: &str) -> Option<Self> {
         let is = |keyword: &str| word.eq_ignore_ascii_case(keyword);
         match word.len() {
@@ -92,40 +94,47 @@ enum Keyword {
     Flag,
 }
 
+/// Every keyword but those of the blocks.
+const WORDS: [(&str, Keyword); 29] = [
+    ("BEGIN", Keyword::Begin),
+    ("NETWORK", Keyword::Network),
+    // As the editor prints a block, in its own language.
+    ("NETZWERK", Keyword::PrintedNetwork),
+    ("RÉSEAU", Keyword::PrintedNetwork),
+    ("RéSEAU", Keyword::PrintedNetwork),
+    ("SEGMENT", Keyword::PrintedNetwork),
+    ("SEGMENTO", Keyword::PrintedNetwork),
+    ("TITLE", Keyword::Title),
+    ("VAR", Keyword::Var),
+    ("VAR_INPUT", Keyword::Var),
+    ("VAR_OUTPUT", Keyword::Var),
+    ("VAR_IN_OUT", Keyword::Var),
+    ("VAR_TEMP", Keyword::Var),
+    ("VAR_STAT", Keyword::Var),
+    ("CONST", Keyword::Var),
+    ("END_VAR", Keyword::EndVar),
+    ("END_CONST", Keyword::EndVar),
+    ("STRUCT", Keyword::Struct),
+    ("END_STRUCT", Keyword::EndStruct),
+    ("AUTHOR", Keyword::Property),
+    ("FAMILY", Keyword::Property),
+    ("NAME", Keyword::Property),
+    ("VERSION", Keyword::Property),
+    ("CODE_VERSION1", Keyword::Flag),
+    ("KNOW_HOW_PROTECT", Keyword::Flag),
+    ("STANDARD", Keyword::Flag),
+    ("UNLINKED", Keyword::Flag),
+    ("READ_ONLY", Keyword::Flag),
+    ("NON_RETAIN", Keyword::Flag),
+];
+
+/// The keywords of a source, as they are spelt.
+pub(in crate::syntax) fn keywords() -> impl Iterator<Item = &'static str> {
+    BlockKind::ALL.iter().map(|it| it.keyword()).chain(WORDS.iter().map(|it| it.0))
+}
+
 impl Keyword {
     fn of(word: &str) -> Option<Self> {
-        const WORDS: [(&str, Keyword); 29] = [
-            ("BEGIN", Keyword::Begin),
-            ("NETWORK", Keyword::Network),
-            // As the editor prints a block, in its own language.
-            ("NETZWERK", Keyword::PrintedNetwork),
-            ("RÉSEAU", Keyword::PrintedNetwork),
-            ("RéSEAU", Keyword::PrintedNetwork),
-            ("SEGMENT", Keyword::PrintedNetwork),
-            ("SEGMENTO", Keyword::PrintedNetwork),
-            ("TITLE", Keyword::Title),
-            ("VAR", Keyword::Var),
-            ("VAR_INPUT", Keyword::Var),
-            ("VAR_OUTPUT", Keyword::Var),
-            ("VAR_IN_OUT", Keyword::Var),
-            ("VAR_TEMP", Keyword::Var),
-            ("VAR_STAT", Keyword::Var),
-            ("CONST", Keyword::Var),
-            ("END_VAR", Keyword::EndVar),
-            ("END_CONST", Keyword::EndVar),
-            ("STRUCT", Keyword::Struct),
-            ("END_STRUCT", Keyword::EndStruct),
-            ("AUTHOR", Keyword::Property),
-            ("FAMILY", Keyword::Property),
-            ("NAME", Keyword::Property),
-            ("VERSION", Keyword::Property),
-            ("CODE_VERSION1", Keyword::Flag),
-            ("KNOW_HOW_PROTECT", Keyword::Flag),
-            ("STANDARD", Keyword::Flag),
-            ("UNLINKED", Keyword::Flag),
-            ("READ_ONLY", Keyword::Flag),
-            ("NON_RETAIN", Keyword::Flag),
-        ];
         if !(3..=22).contains(&word.len()) {
             return None;
         }

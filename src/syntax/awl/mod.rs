@@ -22,6 +22,7 @@ mod tests;
 
 use super::{Mnemonics, Parse, Parser, SyntaxKind};
 
+pub(in crate::syntax) use grammar::keywords;
 pub use vote::vote;
 
 /// Parses one unit: a block, a listing, or several of them.

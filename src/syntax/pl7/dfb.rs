@@ -7,10 +7,10 @@ use SyntaxKind::{
 use super::grammar::Grammar;
 use crate::syntax::{Parser, SyntaxKind};
 
-const END: &str = "END_FUNCTION_BLOCK";
+pub(super) const END: &str = "END_FUNCTION_BLOCK";
 
 /// The words that begin a part of the interface. What the exchange format calls the private variables is not published.
-const SECTIONS: [&str; 6] = ["VAR_INPUT", "VAR_IN_OUT", "VAR_OUTPUT", "VAR_PUBLIC", "VAR_PRIVATE", "VAR"];
+pub(super) const SECTIONS: [&str; 6] = ["VAR_INPUT", "VAR_IN_OUT", "VAR_OUTPUT", "VAR_PUBLIC", "VAR_PRIVATE", "VAR"];
 
 /// Tokens that the name of an item may consist of when it is none.
 const LONGEST_NAME: usize = 6;

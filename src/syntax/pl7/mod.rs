@@ -50,6 +50,21 @@ pub fn is_reserved(text: &str) -> bool {
         || word::subroutine(text).is_some()
 }
 
+/// Words that structure a text or an expression.
+pub(super) fn keywords() -> impl Iterator<Item = &'static str> {
+    word::Keyword::WORDS.iter().copied()
+}
+
+/// Words around the interface of a DFB type.
+pub(super) fn dfb_words() -> impl Iterator<Item = &'static str> {
+    dfb::SECTIONS.into_iter().chain(["FUNCTION_BLOCK", dfb::END, "END_VAR"])
+}
+
+/// Operations of PL7-2 on one operand.
+pub(super) fn operation_codes() -> impl Iterator<Item = &'static str> {
+    operation::CODES.into_iter().chain(operation::ROTATIONS)
+}
+
 /// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
 pub fn parse_chart(text: &str) -> Parse {
     grammar::parse_chart(text, Code::Pl7)

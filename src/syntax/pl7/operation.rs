@@ -14,8 +14,8 @@ use super::word::Keyword;
 use crate::syntax::SyntaxKind;
 
 /// Operations on one operand, by their code; a rotation says its number of bits, in the code or behind it.
-const CODES: [&str; 5] = ["CPL", "BIN", "BCD", "BTA", "ATB"];
-const ROTATIONS: [&str; 2] = ["SLC", "SRC"];
+pub(super) const CODES: [&str; 5] = ["CPL", "BIN", "BCD", "BTA", "ATB"];
+pub(super) const ROTATIONS: [&str; 2] = ["SLC", "SRC"];
 
 /// Whether a word is the code of an operation on one operand: `CPL`, `SLC`, `SLC3`.
 pub(super) fn is_code(text: &str) -> bool {

@@ -21,6 +21,10 @@ macro_rules! words {
         $vis enum $name { $($word),* }
 
         impl $name {
+            /// Every word, in the order of the variants.
+            #[allow(dead_code, reason = "some tables have lists of their own")]
+            pub(super) const WORDS: &[&str] = &[$($text),*];
+
             $vis fn of(text: &str) -> Option<Self> {
                 #[expect(non_upper_case_globals, reason = "the names of the variants")]
                 mod packed {

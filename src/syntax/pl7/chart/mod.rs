@@ -7,6 +7,11 @@ pub mod ast;
 mod grammar;
 pub(super) mod word;
 
+/// Every spelling of the words of a chart.
+pub(in crate::syntax) fn words() -> impl Iterator<Item = &'static str> {
+    word::WORDS.iter().map(|it| it.0)
+}
+
 pub(super) use grammar::stops;
 
 #[cfg(test)]
