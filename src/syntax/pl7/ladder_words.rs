@@ -166,6 +166,11 @@ const WORDS: &[Word] = &[
     assumed("EFFECTIVE_PARAMETER", Element::Actual),
 ];
 
+/// Every word.
+pub fn all() -> &'static [Word] {
+    WORDS
+}
+
 /// The word of that spelling, in any case.
 pub fn lookup(text: &str) -> Option<&'static Word> {
     WORDS.iter().find(|it| it.text.eq_ignore_ascii_case(text))
