@@ -1,6 +1,5 @@
 //! Offsets of a text to lines and columns, and back.
 
-use memchr::memchr2_iter;
 use rowan::{TextRange, TextSize};
 
 /// A place as an editor shows it. Both count from 1.
@@ -31,12 +30,20 @@ impl LineIndex {
     pub fn new(text: &str) -> Self {
         let bytes = text.as_bytes();
         let bytes = bytes.get(..u32::MAX as usize).unwrap_or(bytes);
-        let mut line_starts = vec![0];
-        for at in memchr2_iter(b'\n', b'\r', bytes) {
-            if bytes[at] == b'\n' || bytes.get(at + 1) != Some(&b'\n') {
-                line_starts.push((at + 1) as u32);
+        let mut line_starts = Vec::with_capacity(bytes.len() / 24 + 1);
+        line_starts.push(0);
+        // Lines are short: a vector search for each break costs more than looking at eight bytes at a time.
+        let words = bytes.chunks_exact(8);
+        let rest = words.remainder();
+        let starts_after = |at: usize| bytes[at] == b'\n' || bytes[at] == b'\r' && bytes.get(at + 1) != Some(&b'\n');
+        for (word, at) in words.zip((0..).step_by(8)) {
+            let has_break = word.iter().fold(false, |found, it| found | matches!(it, b'\n' | b'\r'));
+            if has_break {
+                line_starts.extend((at..at + 8).filter(|&at| starts_after(at)).map(|at| at as u32 + 1));
             }
         }
+        let rest = bytes.len() - rest.len()..bytes.len();
+        line_starts.extend(rest.filter(|&at| starts_after(at)).map(|at| at as u32 + 1));
         let (mut continuation, mut astral) = (None, None);
         if !bytes.is_ascii() {
             continuation = BitSet::new(bytes, |byte| byte & 0xc0 == 0x80);
