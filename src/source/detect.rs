@@ -557,7 +557,7 @@ impl Tally {
         let mut tally = Self { markup: start.starts_with(['<', '{']), ..Self::default() };
         // A line comment is none in PL7, but no PL7 text has `//` outside of comments.
         for line in Lines::new(text, Comments::Step7) {
-            let code = line.code.split("//").next().unwrap_or_default().trim();
+            let code = before_line_comment(line.code).trim();
             // Parentheses and the dots of an omission alone mean nothing.
             // A semicolon starts a comment of STEP 5.
             if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) && !(code.starts_with(';') && code.len() > 1) {
@@ -804,6 +804,13 @@ fn is_chart_line(code: &str, first: &str) -> bool {
     }
 }
 
+/// The part of a line before `//`.
+fn before_line_comment(code: &str) -> &str {
+    let mut slashes = memchr::memchr_iter(b'/', code.as_bytes());
+    let end = slashes.find(|at| code.as_bytes().get(at + 1) == Some(&b'/')).unwrap_or(code.len());
+    code.get(..end).unwrap_or_default()
+}
+
 /// Names of PL7 objects between `%` and the number.
 const PL7_OBJECTS: [&str; 34] = [
     "I", "Q", "M", "K", "S", "X", "T", "C", "R", "L", "IW", "QW", "MW", "KW", "SW", "ID", "QD", "MD", "KD", "SD", "MB",
@@ -830,12 +837,12 @@ fn has_pl7_object(line: &str) -> bool {
 /// has a comma.
 fn has_pl7_2_object(line: &str) -> bool {
     let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
-    let is_declared = || line.split_once(" AT ").is_some_and(|it| declared_by_pl7_2(it.1.trim_start()));
+    // Nearly no line has any of these: to look whether one is there costs less than to look where.
     let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
-    let is_transfer = || line.contains("->") && line.contains("END_BLOCK") && !line.contains(":=");
-    words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault))
-        || is_transfer()
-        || is_declared()
+    let mut is_named = || words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault));
+    let is_transfer = || line.contains("END_BLOCK") && !line.contains(":=");
+    let is_declared = || line.split_once(" AT ").is_some_and(|it| declared_by_pl7_2(it.1.trim_start()));
+    line.contains(',') && is_named() || line.contains("->") && is_transfer() || line.contains(" AT ") && is_declared()
 }
 
 /// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
@@ -1096,13 +1103,15 @@ fn is_step5_table(path: &Path) -> bool {
 
 /// Whether a row of a symbol table names a block that only STEP 5 has.
 fn is_step5_row(line: &str) -> bool {
-    line.split(['\t', '"', ',']).any(|field| {
-        let (letters, number) = field.trim().split_at_checked(2).unwrap_or_default();
-        let number = number.trim();
-        matches!(letters, "PB" | "SB" | "FX" | "DX")
-            && !number.is_empty()
-            && number.bytes().all(|it| it.is_ascii_digit())
-    })
+    let has_letters = line.as_bytes().windows(2).any(|it| matches!(it, [b'P' | b'S', b'B'] | [b'F' | b'D', b'X']));
+    has_letters
+        && line.split(['\t', '"', ',']).any(|field| {
+            let (letters, number) = field.trim().split_at_checked(2).unwrap_or_default();
+            let number = number.trim();
+            matches!(letters, "PB" | "SB" | "FX" | "DX")
+                && !number.is_empty()
+                && number.bytes().all(|it| it.is_ascii_digit())
+        })
 }
 
 /// Whether a line is a row of a symbol table: quoted fields, fixed width after `126,`, or an address between tabs.

@@ -6,8 +6,15 @@ use crate::model::entity::{BlockKind, BlockName, Entity, Part, Task};
 
 /// Splits off the first word: letters, digits and underscores.
 pub(super) fn word(text: &str) -> (&str, &str) {
-    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
-    text.split_at(end)
+    let is_part = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    let ascii = text.bytes().position(|it| !is_part(it)).unwrap_or(text.len());
+    // Nearly all words end at a sign or a blank.
+    let rest = text.get(ascii..).unwrap_or_default();
+    let more = match rest.starts_with(|it: char| it.is_ascii()) {
+        true => 0,
+        false => rest.find(|it: char| !it.is_alphanumeric() && it != '_').unwrap_or(rest.len()),
+    };
+    text.split_at(ascii + more)
 }
 
 /// What follows `prefix`, in any case, at the start of `text`.
