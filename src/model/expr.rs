@@ -245,6 +245,17 @@ impl Pool {
     }
 }
 
+/// Where the expressions of a unit stand in a [`Pool`] that was cut out of it.
+#[derive(Debug)]
+pub struct Places(Vec<u32>);
+
+impl Places {
+    /// Of an expression that is part of the pool.
+    pub fn of(&self, id: ExprId) -> u32 {
+        self.0.get(id.0 as usize).copied().unwrap_or(0)
+    }
+}
+
 /// What stands in the place of a read.
 pub enum Replaced {
     /// This, as it is.
@@ -419,23 +430,27 @@ impl Exprs {
     }
 
     /// Some conditions with all that they are made of, versions too, and where each expression went.
-    pub fn cut_all(&self, conditions: impl IntoIterator<Item = ExprId>) -> (Pool, FxHashMap<ExprId, u32>) {
-        let mut seen: FxHashSet<ExprId> = FxHashSet::default();
-        let mut stack: Vec<ExprId> = conditions.into_iter().filter(|it| seen.insert(*it)).collect();
-        while let Some(id) = stack.pop() {
-            self.get(id).operands(|it| {
-                if seen.insert(it) {
-                    stack.push(it);
-                }
-            });
-        }
+    pub fn cut_all(&self, conditions: impl IntoIterator<Item = ExprId>) -> (Pool, Places) {
+        let mut is_part = vec![false; self.nodes.len()];
+        let mark = |is_part: &mut Vec<bool>, id: ExprId| {
+            if let Some(it) = is_part.get_mut(id.0 as usize) {
+                *it = true;
+            }
+        };
+        conditions.into_iter().for_each(|it| mark(&mut is_part, it));
         // Ids grow from operands to what they are operands of.
-        let mut ids: Vec<ExprId> = seen.into_iter().collect();
-        ids.sort_unstable();
-        let places: FxHashMap<ExprId, u32> = ids.iter().copied().zip(0..).collect();
-        let place = |id: ExprId| ExprId(places.get(&id).copied().unwrap_or(0));
-        let nodes = ids.iter().map(|it| Packed::new(self.get(*it).with_operands(place))).collect();
-        (Pool { nodes }, places)
+        for (at, node) in self.nodes.iter().enumerate().rev() {
+            if is_part[at] {
+                node.operands(|it| mark(&mut is_part, it));
+            }
+        }
+        let mut places = Places(vec![0; self.nodes.len()]);
+        let mut nodes = Vec::with_capacity(is_part.iter().filter(|it| **it).count());
+        for (at, node) in self.nodes.iter().enumerate().filter(|it| is_part[it.0]) {
+            places.0[at] = u32::try_from(nodes.len()).unwrap_or(u32::MAX);
+            nodes.push(Packed::new(node.with_operands(|it| ExprId(places.of(it)))));
+        }
+        (Pool { nodes: nodes.into() }, places)
     }
 
     /// A condition in which reads, edge tests and values about which nothing is known are replaced. `known` holds what is

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
-use crate::model::expr::{Expr, ExprId, Exprs, Operator, Pool};
+use crate::model::expr::{Expr, ExprId, Exprs, Operator, Places, Pool};
 use crate::model::object::Class;
 use crate::model::unit::{Pin, StatementKind};
 
@@ -138,8 +138,8 @@ impl Drawn {
         all.into_iter().flatten()
     }
 
-    fn place(&self, places: &FxHashMap<ExprId, u32>) -> Act {
-        let at = |it: ExprId| places.get(&it).copied().unwrap_or(0);
+    fn place(&self, places: &Places) -> Act {
+        let at = |it: ExprId| places.of(it);
         match *self {
             Self::Write(how, object, anchor, network, path, value) => {
                 Act::Write { how, object, anchor, network, path: at(path), value: value.map(at) }

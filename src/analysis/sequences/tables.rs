@@ -13,7 +13,7 @@ use super::trace::{Event, Trace};
 use crate::analysis::Site;
 use crate::analysis::program::ProgramIndex;
 use crate::model::expr::{Comparison, Expr, ExprId, Exprs, ObjectId, Operator};
-use crate::model::object::{Class, Footprint};
+use crate::model::object::{Area, Class, Footprint};
 use crate::model::unit::{Mode, Pin};
 
 /// A sequence in tables.
@@ -143,13 +143,11 @@ fn by_step(trace: &Trace<'_>) -> Vec<Words> {
     const FEWEST: usize = 3;
     // By distance between the two words: bits that are assigned.
     let mut held: FxHashMap<(i64, u32), FxHashSet<ObjectId>> = FxHashMap::default();
-    let mut areas = Vec::new();
+    let mut areas: FxHashMap<&Area, u32> = FxHashMap::default();
     for event in trace.events.iter().filter(|it| it.how == How::Assign) {
         let (Some(value), place) = (event.value, &trace.object(event.object).footprint) else { continue };
-        let area = areas.iter().position(|it| *it == &place.area).unwrap_or_else(|| {
-            areas.push(&place.area);
-            areas.len() - 1
-        });
+        let next = u32::try_from(areas.len()).unwrap_or(u32::MAX);
+        let area = *areas.entry(&place.area).or_insert(next);
         let ways = trace.disjuncts(value);
         if ways.len() < 2 {
             continue;
@@ -163,7 +161,7 @@ fn by_step(trace: &Trace<'_>) -> Vec<Words> {
                 let of = &trace.object(bit).footprint;
                 let distance = i64::from(of.start) - i64::from(place.start);
                 if of.area == place.area && distance != 0 && distance % 8 == 0 {
-                    held.entry((distance, u32::try_from(area).unwrap_or(0))).or_default().insert(event.object);
+                    held.entry((distance, area)).or_default().insert(event.object);
                 }
             }
         }
