@@ -158,14 +158,18 @@ impl<'a> Space<'a> {
         if a == b || a == Exprs::FALSE || b == Exprs::TRUE {
             return true;
         }
-        // What is free of a condition is false while it holds.
+        // What is free of a condition is false while it holds. A disjunction is false where all that it is made of is.
         let (mut given, mut parts) = (Vec::new(), Vec::new());
         spread(self.exprs, a, &mut given);
         spread(self.exprs, b, &mut parts);
         let is_free = |part: &ExprId| {
-            let mut all = given.clone();
-            all.push(*part);
-            *part != Exprs::TRUE && !given.contains(part) && self.by_form(&mut all) == Some(Verdict::Possible)
+            let mut all = Vec::new();
+            spread_disjuncts(self.exprs, *part, &mut all);
+            let is_possible = |it: &ExprId| *it != Exprs::TRUE && !given.contains(it);
+            all.iter().all(is_possible) && {
+                all.extend_from_slice(&given);
+                self.by_form(&mut all) == Some(Verdict::Possible)
+            }
         };
         /// So many parts are looked at.
         const FEW: usize = 4;
@@ -380,12 +384,21 @@ impl<'a> Space<'a> {
 
 /// The conjuncts of a condition, at most 256 of them looked into.
 fn spread(exprs: &Exprs, condition: ExprId, out: &mut Vec<ExprId>) {
+    spread_parts(condition, out, |it| if let Expr::And(a, b) = *exprs.get(it) { Some((a, b)) } else { None });
+}
+
+/// The same of what it is a disjunction of.
+fn spread_disjuncts(exprs: &Exprs, condition: ExprId, out: &mut Vec<ExprId>) {
+    spread_parts(condition, out, |it| if let Expr::Or(a, b) = *exprs.get(it) { Some((a, b)) } else { None });
+}
+
+fn spread_parts(of: ExprId, out: &mut Vec<ExprId>, parts: impl Fn(ExprId) -> Option<(ExprId, ExprId)>) {
     let mut at = out.len();
     let mut budget = 256;
-    out.push(condition);
+    out.push(of);
     while let Some(&id) = out.get(at) {
-        match exprs.get(id) {
-            &Expr::And(a, b) if budget > 0 => {
+        match parts(id) {
+            Some((a, b)) if budget > 0 => {
                 budget -= 1;
                 out[at] = a;
                 out.push(b);
