@@ -3,7 +3,9 @@
 //! The source manual shows the operands by example; letters, the English set and the status bits come from the vendor's
 //! general documentation. What only some CPU lacks is the business of [`crate::target`].
 
-use smol_str::{SmolStr, StrExt, ToSmolStr};
+use std::borrow::Cow;
+
+use smol_str::{SmolStr, SmolStrBuilder, StrExt, ToSmolStr};
 
 use super::{AddressError, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
 use crate::model::entity::{BlockKind, BlockName};
@@ -23,7 +25,7 @@ pub fn parse(operand: &str, mnemonics: Mnemonics) -> Result<Object, AddressError
     let operand = operand.trim();
     let compact = compact(operand);
     let found = read(&compact, mnemonics);
-    found.map(|place| place.object(compact.as_str().into())).map_err(|mut error| {
+    found.map(|place| place.object(compact.clone())).map_err(|mut error| {
         if error.kind == AddressErrorKind::Malformed {
             error.suggestion = nearest(&compact, operand.contains([' ', '\t', '\u{a0}']), mnemonics);
         }
@@ -48,18 +50,33 @@ pub fn translated(operand: &str, mnemonics: Mnemonics) -> Option<String> {
 }
 
 /// The operand without the blanks that stand outside quotes.
-fn compact(operand: &str) -> String {
+fn compact(operand: &str) -> SmolStr {
+    let mut text = SmolStrBuilder::new();
+    if operand.bytes().all(|it| matches!(it, b'\t' | b' ' | b'!' | b'#'..=b'~')) {
+        operand.split_ascii_whitespace().for_each(|it| text.push_str(it));
+        return text.finish();
+    }
     let mut quoted = false;
-    let keep = |char: &char| {
+    for char in operand.chars() {
         match char {
             '"' => quoted = !quoted,
             '«' => quoted = true,
             '»' => quoted = false,
             _ => {}
         }
-        quoted || !char.is_whitespace()
-    };
-    operand.chars().filter(keep).collect()
+        if quoted || !char.is_whitespace() {
+            text.push(char);
+        }
+    }
+    text.finish()
+}
+
+/// The operand in capitals, which nearly all are.
+fn capitals(compact: &str) -> Cow<'_, str> {
+    match compact.bytes().any(|it| it.is_ascii_lowercase()) {
+        true => Cow::Owned(compact.to_ascii_uppercase()),
+        false => Cow::Borrowed(compact),
+    }
 }
 
 struct Place {
@@ -180,15 +197,18 @@ fn read(compact: &str, mnemonics: Mnemonics) -> Result<Place, AddressError> {
     if let Some((name, item)) = quoted_block(compact) {
         return data_item(BlockName::Symbol(name), item, compact);
     }
-    let upper = compact.to_ascii_uppercase();
+    let upper = capitals(compact);
     if let Some(place) = indirect(&upper, mnemonics) {
-        return Ok(place);
-    }
-    if let Some(place) = status(&upper, mnemonics) {
         return Ok(place);
     }
     let letters_end = upper.bytes().position(|it| !it.is_ascii_alphabetic()).unwrap_or(upper.len());
     let (letters, rest) = upper.split_at(letters_end);
+    // The status has letters alone, or none.
+    if (letters.is_empty() || rest.is_empty())
+        && let Some(place) = status(&upper, mnemonics)
+    {
+        return Ok(place);
+    }
     if let Some((_, kind)) = BLOCKS.iter().find(|(name, _)| *name == letters) {
         return block(*kind, letters, rest, compact);
     }
@@ -284,7 +304,7 @@ fn block(kind: BlockKind, letters: &str, rest: &str, compact: &str) -> Result<Pl
 
 /// What stands after `DB5.` or `"Data".`: `DBW0`, or the name of a field, whose place only the block's declaration tells.
 fn data_item(name: BlockName, item: &str, compact: &str) -> Result<Place, AddressError> {
-    let upper = item.to_ascii_uppercase();
+    let upper = capitals(item);
     let digits = upper.bytes().position(|it| !it.is_ascii_alphabetic()).unwrap_or(upper.len());
     let (letters, rest) = upper.split_at(digits);
     let ty = letters.strip_prefix("DB").and_then(|format| format_type(format, Bits::X));

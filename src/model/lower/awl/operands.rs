@@ -1,7 +1,7 @@
 //! Declarations, addresses and constants.
 
 use rowan::TextRange;
-use smol_str::SmolStr;
+use smol_str::{SmolStr, StrExt as _};
 
 use super::Machine;
 use crate::model::entity::BlockKind;
@@ -124,12 +124,10 @@ impl Machine {
                 let ty = indirect_type(&text);
                 return Operand::Object(self.indirect(&text, ty));
             }
-            Some(_) => match text.to_ascii_uppercase().as_str() {
-                "TRUE" => Operand::Constant(Exprs::TRUE),
-                "FALSE" => Operand::Constant(Exprs::FALSE),
-                "AR1" | "AR2" => Operand::Other,
+            Some(_) => match known_word(&text) {
+                Some(operand) => operand,
                 // Not cached when it is none: each place is reported.
-                _ => match self.address(&text, range) {
+                None => match self.address(&text, range) {
                     Ok(object) => Operand::Object(object),
                     Err(object) => return Operand::Object(object),
                 },
@@ -183,9 +181,11 @@ impl Machine {
 
     /// `Err`: what stands for a text that is no address.
     pub(super) fn address(&mut self, text: &str, range: TextRange) -> Result<ObjectId, ObjectId> {
-        let root = text.split(['.', '[']).next().unwrap_or_default().to_lowercase();
-        if self.declared.contains_key(root.as_str()) {
-            return Ok(self.local(text, false));
+        if !self.declared.is_empty() {
+            let root = text.split(['.', '[']).next().unwrap_or_default();
+            if self.declared.contains_key(root.to_lowercase_smolstr().as_str()) {
+                return Ok(self.local(text, false));
+            }
         }
         let Language::Awl(mnemonics) = self.language else { return Ok(self.b.object(Object::symbol(text))) };
         match object::step7::parse(text, mnemonics) {
@@ -294,8 +294,22 @@ pub(super) fn indirect_type(text: &str) -> Type {
     }
 }
 
+/// A word that is an operand without being an object.
+fn known_word(text: &str) -> Option<Operand> {
+    let words = [
+        ("TRUE", Operand::Constant(Exprs::TRUE)),
+        ("FALSE", Operand::Constant(Exprs::FALSE)),
+        ("AR1", Operand::Other),
+        ("AR2", Operand::Other),
+    ];
+    words.into_iter().find(|it| it.0.eq_ignore_ascii_case(text)).map(|it| it.1)
+}
+
 /// The operand without blanks: `M0.0`, `DB5.DBW0`.
 pub(super) fn bare_text(operand: &ast::Operand) -> SmolStr {
+    if operand.syntax().is_leaf() {
+        return operand.syntax().text().into();
+    }
     let mut text = smol_str::SmolStrBuilder::new();
     for token in operand.tokens() {
         text.push_str(token.text());
