@@ -93,15 +93,22 @@ fn flaw(program: &ProgramIndex<'_>, call: &GlobalCall<'_>, formal: &Field, argum
     }
 }
 
+/// The last of the Latin letters, some of which every code page has.
+const LAST_LATIN: char = '\u{24F}';
+
 /// Symbols in quotes that no row of the program's table has: the first use of each.
 fn unknown_symbols(program: &ProgramIndex<'_>, sink: &mut Sink<'_, Site>) {
     let declared = program.units.iter().flat_map(|it| &it.symbols).map(|it| key(&it.name));
     let declared: FxHashSet<_> = declared.collect();
+    // A table with no letter of the alphabet that a symbol is in was read in another encoding than its own.
+    let is_foreign = |it: &str| it.chars().any(|it| it > LAST_LATIN && it.is_alphabetic());
+    let reads_foreign = declared.iter().any(|it| is_foreign(it));
     for it in &program.objects {
         let quoted = it.object.text.starts_with('"');
         let Area::Symbol(name) = &it.object.footprint.area else { continue };
         // Of one with two addresses, rule N001 tells.
-        if quoted && it.object.class == Class::Symbol && !declared.contains(name) {
+        let is_judged = reads_foreign || !is_foreign(name);
+        if quoted && it.object.class == Class::Symbol && !declared.contains(name) && is_judged {
             let mut uses = it.uses.iter();
             let Some(first) = uses.next() else { continue };
             sink.report(first.site(), format!("`{}` is not in the symbol table", it.object.text))

@@ -30,7 +30,7 @@ use crate::syntax::{AstNode as _, Language, SyntaxElement, SyntaxKind, SyntaxNod
 use crate::target;
 
 use accumulators::{Accumulator, Load, comparison};
-use calls::{OpenBlock, instance_of};
+use calls::{OpenBlock, instance_of, is_of_tia_portal};
 use flow::{Arrival, back_targets, label};
 use operands::Operand;
 use rlo::{LogicString, Nest, Rlo, RloState};
@@ -119,6 +119,7 @@ impl Machine {
         self.closed = block.kind() == SyntaxKind::Block;
         self.declarations(block);
         self.b.model.instance_of = instance_of(block);
+        self.b.model.of_tia_portal = is_of_tia_portal(block);
         for init in block.children().filter_map(ast::DataInit::cast) {
             self.initial_value(init.value());
         }
