@@ -27,13 +27,18 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         // A bit that only takes the outputs of calls which nobody wants is a waste basket.
         let is_sink =
             uses.object.class != Class::Output && !uses.is_read() && writes.iter().all(|it| it.mode == Mode::Output);
-        if writes.is_empty() || is_sink {
+        // What was not understood may read the bit between two writes.
+        let is_hidden =
+            uses.object.class != Class::Output && writes.iter().any(|it| cx.program.units[it.unit as usize].has_gaps);
+        if writes.is_empty() || is_sink || is_hidden {
             continue;
         }
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
         let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
-            drives::override_each_other(a, b) && !drives::of_one_instance(cx.program, a, b)
+            drives::override_each_other(a, b)
+                && !drives::of_one_instance(cx.program, a, b)
+                && ![a, b].iter().all(|it| drives::is_of_cleared_table(cx.program, it, cx.neighbours(at)))
         };
         if let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))

@@ -17,6 +17,17 @@ pub fn covering<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours
     found
 }
 
+/// Whether the bit that a place drives lies in a table that the block clears as a whole first, so that it computes the
+/// table anew: several graphs may have one table of receptivities (GRF:1191). `neighbours`: objects that share memory with
+/// the bit.
+pub fn is_of_cleared_table(program: &ProgramIndex<'_>, place: &GlobalUse<'_>, neighbours: &[u32]) -> bool {
+    let tables = neighbours.iter().filter_map(|&it| program.objects.get(it as usize));
+    let clears = |it: &GlobalUse<'_>| {
+        it.unit == place.unit && it.it.anchor < place.it.anchor && it.it.constant == Some(0) && !it.it.conditional
+    };
+    tables.filter(|it| it.object.ty != Type::Bool).any(|it| it.with_mode(|it| it == Mode::Store).any(clears))
+}
+
 /// Whether one of two assignments undoes the other. Two constants under a condition store a value, as set and reset do,
 /// and equal constants are one value.
 pub fn override_each_other(a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {

@@ -32,7 +32,7 @@ use crate::target;
 use accumulators::{Accumulator, Load, comparison};
 use calls::{OpenBlock, instance_of, is_of_tia_portal};
 use flow::{Arrival, back_targets, label};
-use operands::Operand;
+use operands::{Operand, bare_text};
 use rlo::{LogicString, Nest, Rlo, RloState};
 
 /// Lowers one block or listing.
@@ -447,6 +447,14 @@ impl Machine {
                     self.load(value, range, mnemonic_text(instr));
                     // What a register holds is there for the taking: losing it loses nothing.
                     self.use_loads(0);
+                }
+            }
+            // What STEP 7 makes of a `CALL` stands between `BLD 1` and `BLD 2` in a print of compiled code (measured). It
+            // keeps the RLO, whatever that is.
+            Op::Display if self.rlo.state != RloState::Known => {
+                if instr.operand().is_some_and(|it| bare_text(&it) == "1") {
+                    let value = self.b.exprs().opaque();
+                    self.rlo = Rlo { state: RloState::Known, value };
                 }
             }
             Op::SwapAddressRegisters | Op::Nop | Op::Display => {}
