@@ -482,7 +482,10 @@ fn a_project_folder_of_step_7() {
     step7_project(&folder.path().join("plant"), &sources, &symbols);
     // Beside it, one with other names for the same addresses.
     let other: [&[&str]; 1] = [&["Fan", "Q       4.0", "A       4.0", "BOOL", ""]];
-    let fan = [("S7ASRCOM/00000007/1.AWL", "FUNCTION FC 1 : VOID\nBEGIN\nNETWORK\n      U     E 0.0\n      =     \"Fan\"\n      U     \"Pump\"\n      S     M 0.0\nEND_FUNCTION\n")];
+    let fan = [(
+        "S7ASRCOM/00000007/1.AWL",
+        "FUNCTION FC 1 : VOID\nBEGIN\nNETWORK\n      U     E 0.0\n      =     \"Fan\"\n      U     \"Pump\"\n      S     M 0.0\nEND_FUNCTION\n",
+    )];
     step7_project(&folder.path().join("fans"), &fan, &other);
     let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,B012,N004,X001"]);
     let lines: Vec<&str> = out.lines().collect();

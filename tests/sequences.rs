@@ -279,13 +279,24 @@ fn steps_are_instances() {
     let clean = found(&format!("{STEP}{block}{data}{main}"));
     assert_eq!(clean, [""; 0], "an instance is no other one");
 
-    // The receptivities as they are met: steps are passed, from the first to the second one.
-    let met = "CALL #s0 (set := #t2, reset := #s1.x)\nU #s0.x\nU E0.0\n= #t0\nCALL #s1 (set := #t0, reset := #s2.x)\nU #s1.x\nU \
-               E0.1\n= #t1\nCALL #s2 (set := #t1, reset := #s0.x)\nU #s2.x\nU E0.2\n= #t2\n";
-    let block = block.replace(&format!("{transitions_of}{calls}"), met);
-    let found = found(&format!("{STEP}{block}{data}{main}"));
-    assert!(!found.is_empty() && found.iter().all(|it| it.starts_with('Q')), "{found:?}");
+    // The step takes itself back from the one before: from the last step to the first, none is passed.
+    let call = |at: u32| format!("CALL #s{at} (previous := #s{}.x, condition := E0.{at})\n", (at + 2) % 3);
+    let judged = |calls: [u32; 3]| {
+        let start = "UN #s0.x\nUN #s1.x\nUN #s2.x\nS #s0.x\n";
+        let calls: String = calls.map(call).concat();
+        let block = format!(
+            "FUNCTION_BLOCK FB 10\n{}BEGIN\nNETWORK\n{start}{calls}END_FUNCTION_BLOCK\n",
+            instances.replace("FB 2", "FB 3")
+        );
+        found(&format!("{TAKING_STEP}{block}{data}{main}"))
+    };
+    assert_eq!(judged([2, 1, 0]), [""; 0]);
+    assert_eq!(judged([1, 2, 0]), ["Q001"]);
 }
+
+/// A step that is given the one before it.
+const TAKING_STEP: &str = "FUNCTION_BLOCK FB 3\nVAR_INPUT\n  condition : BOOL;\nEND_VAR\nVAR_OUTPUT\n  x : BOOL;\nEND_VAR\nVAR_IN_OUT\n  \
+                           previous : BOOL;\nEND_VAR\nBEGIN\nNETWORK\nU #previous\nU #condition\nS #x\nR #previous\nEND_FUNCTION_BLOCK\n";
 
 /// The same with a data block for each, as other blocks see them.
 #[test]
@@ -296,12 +307,13 @@ fn steps_are_data_blocks() {
     let (main, start) = (ob(1, code), ob(100, "SET\nS DB20.x\n"));
     let text = [STEP, &data(20), &data(21), &data(22), &main, &start].concat();
     assert_eq!(found(&text), [""; 0]);
-    let late = code.replace("U DB22.x\nU E0.2\n= M0.2\n", "") + "U DB22.x\nU E0.2\n= M0.2\n";
-    let early = late
-        .replace("U DB21.x\nU E0.1\n= M0.1\n", "")
-        .replace("CALL FB 2, DB 22", "U DB21.x\nU E0.1\n= M0.1\nCALL FB 2, DB 22");
-    let text = [STEP, &data(20), &data(21), &data(22), &ob(1, &early), &start].concat();
-    assert!(found(&text).contains(&"Q001") || found(&text).contains(&"Q003"), "{:?}", found(&text));
+    let data = |n: u32| data(n).replace("FB 2", "FB 3");
+    let judged = |calls: [u32; 3]| {
+        let call = |at: u32| format!("CALL FB 3, DB 2{at} (previous := DB2{}.x, condition := E0.{at})\n", (at + 2) % 3);
+        found(&[TAKING_STEP, &data(20), &data(21), &data(22), &ob(1, &calls.map(call).concat()), &start].concat())
+    };
+    assert_eq!(judged([2, 1, 0]), [""; 0]);
+    assert_eq!(judged([1, 2, 0]), ["Q001"]);
 }
 
 /// The sequence in one block, its conditions in another one, its outputs in a third.
