@@ -463,6 +463,7 @@ fn step7_project(root: &Path, sources: &[(&str, &str)], symbols: &[&[&str]]) {
     file("YDBs/SYMLISTS.DBF", &table(&[("_DBPATH", 10)], &[&["10394"]]));
     file("YDBs/10394/SYMLIST.DBF", &table(&SYMLIST, symbols));
     file("ombstx/offline/00000001/BAUSTEIN.DBF", &table(&[("ID", 5)], &[]));
+    file("ombstx/offline/00000001/SUBBLK.DBF", &table(&[("ID", 5)], &[]));
 }
 
 #[test]
@@ -489,6 +490,25 @@ fn a_project_folder_of_step_7() {
     step7_project(&folder.path().join("fans"), &fan, &other);
     let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,B012,N004,X001"]);
     let lines: Vec<&str> = out.lines().collect();
-    let expected = [""; 0];
-    assert_eq!(lines, expected);
+    let expected = [
+        "fans/S7ASRCOM/00000007/1.AWL:6:13: B012[call-parameter] error: `\"Pump\"` is not in the symbol table [FC1]",
+        "plant/YDBs/10394/SYMLIST.DBF:5:2: N004[symbol-unused] note: the program does not use `Old`, the symbol of `A4.7` [file]",
+        "plant/s7asrcom/00000001/00000002.awl:5:13: W001[single-write] warning: `\"Pump\"` (`Q4.0`) is assigned in more than one \
+         place [FC1]",
+        "plant/s7asrcom/00000001/00000002.awl:6:13: B012[call-parameter] error: `\"Missing\"` is not in the symbol table [FC1]",
+        "fans/ombstx/offline/00000001/SUBBLK.DBF: not read: compiled STEP 7 blocks (SUBBLK.DBF) is not supported",
+        "plant/ombstx/offline/00000001/SUBBLK.DBF: not read: compiled STEP 7 blocks (SUBBLK.DBF) is not supported",
+    ];
+    assert_eq!(lines[..lines.len() - 1], expected);
+    assert!(lines[lines.len() - 1].starts_with("5 files, 3 programs and blocks"), "{out}");
+    // Both places of the pump, each in its source.
+    let (out, _) = run(folder.path(), &["--format", "json", "--select", "W001"]);
+    let report: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+    let finding = &report["findings"][0];
+    assert_eq!(finding["related"][0]["path"], "plant/s7asrcom/00000001/00000001.AWL");
+    assert_eq!(finding["related"][0]["start"]["line"], 6);
+    // Without its table, the symbols are names that nothing resolves, and the pump is driven once.
+    fs::remove_file(folder.path().join("plant/YDBs/10394/SYMLIST.DBF")).expect("a file");
+    let (out, _) = run(&folder.path().join("plant"), &["--format", "concise", "--select", "W001,B012,N004,X001"]);
+    assert_eq!(out.lines().filter(|it| it.contains("[FC1]")).count(), 0, "{out}");
 }

@@ -1,5 +1,7 @@
 //! W001: a bit driven by assignment in more than one place.
 
+use std::cell::LazyCell;
+
 use crate::analysis::Site;
 use crate::analysis::program::GlobalUse;
 use crate::analysis::{coactive, drives};
@@ -35,9 +37,13 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
+        // Only the last value of an output gets to the process.
+        let is_kept = uses.object.class != Class::Output;
+        let reading = LazyCell::new(|| drives::ReadingCalls::new(cx.program, uses));
         let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
             drives::override_each_other(a, b)
                 && !drives::of_one_instance(cx.program, a, b)
+                && !(is_kept && reading.between(a, b))
                 && ![a, b].iter().all(|it| drives::is_of_cleared_table(cx.program, it, cx.neighbours(at)))
         };
         if let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) {
