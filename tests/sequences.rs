@@ -280,9 +280,9 @@ fn steps_are_instances() {
     assert_eq!(clean, [""; 0], "an instance is no other one");
 
     // The step takes itself back from the one before: from the last step to the first, none is passed.
-    let call = |at: u32| format!("CALL #s{at} (previous := #s{}.x, condition := E0.{at})\n", (at + 2) % 3);
+    let call = |at: u32| format!("CALL #s{at} (previous := #s{}.x, condition := M5.{at})\n", (at + 2) % 3);
     let judged = |calls: [u32; 3]| {
-        let start = "UN #s0.x\nUN #s1.x\nUN #s2.x\nS #s0.x\n";
+        let start = format!("UN #s0.x\nUN #s1.x\nUN #s2.x\nS #s0.x\n{CONDITIONS}");
         let calls: String = calls.map(call).concat();
         let block = format!(
             "FUNCTION_BLOCK FB 10\n{}BEGIN\nNETWORK\n{start}{calls}END_FUNCTION_BLOCK\n",
@@ -293,6 +293,9 @@ fn steps_are_instances() {
     assert_eq!(judged([2, 1, 0]), [""; 0]);
     assert_eq!(judged([1, 2, 0]), ["Q001"]);
 }
+
+/// Where the loop closes, they exclude each other.
+const CONDITIONS: &str = "UN E0.2\n= M5.0\nU E0.1\n= M5.1\nU E0.2\n= M5.2\n";
 
 /// A step that is given the one before it.
 const TAKING_STEP: &str = "FUNCTION_BLOCK FB 3\nVAR_INPUT\n  condition : BOOL;\nEND_VAR\nVAR_OUTPUT\n  x : BOOL;\nEND_VAR\nVAR_IN_OUT\n  \
@@ -309,8 +312,9 @@ fn steps_are_data_blocks() {
     assert_eq!(found(&text), [""; 0]);
     let data = |n: u32| data(n).replace("FB 2", "FB 3");
     let judged = |calls: [u32; 3]| {
-        let call = |at: u32| format!("CALL FB 3, DB 2{at} (previous := DB2{}.x, condition := E0.{at})\n", (at + 2) % 3);
-        found(&[TAKING_STEP, &data(20), &data(21), &data(22), &ob(1, &calls.map(call).concat()), &start].concat())
+        let call = |at: u32| format!("CALL FB 3, DB 2{at} (previous := DB2{}.x, condition := M5.{at})\n", (at + 2) % 3);
+        let main = ob(1, &format!("{CONDITIONS}{}", calls.map(call).concat()));
+        found(&[TAKING_STEP, &data(20), &data(21), &data(22), &main, &start].concat())
     };
     assert_eq!(judged([2, 1, 0]), [""; 0]);
     assert_eq!(judged([1, 2, 0]), ["Q001"]);
