@@ -29,9 +29,12 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         // A bit that only takes the outputs of calls which nobody wants is a waste basket.
         let is_sink =
             uses.object.class != Class::Output && !uses.is_read() && writes.iter().all(|it| it.mode == Mode::Output);
-        // What was not understood may read the bit between two writes.
-        let is_hidden =
-            uses.object.class != Class::Output && writes.iter().any(|it| cx.program.units[it.unit as usize].has_gaps);
+        // What was not understood may read the bit between two writes. Actions of a chart are apart from one another.
+        let may_read = |it: &GlobalUse<'_>| {
+            let unit = cx.program.units[it.unit as usize];
+            unit.has_gaps && !unit.language.is_chart()
+        };
+        let is_hidden = uses.object.class != Class::Output && writes.iter().any(may_read);
         if writes.is_empty() || is_sink || is_hidden {
             continue;
         }
