@@ -84,7 +84,7 @@ fn flaw(program: &ProgramIndex<'_>, call: &GlobalCall<'_>, formal: &Field, argum
         Passed::Constant(Some(ty)) => {
             // TIA Portal writes FALSE and TRUE so.
             let is_truth = matches!(argument.text.as_str(), "0" | "1");
-            let takes = takes.filter(|it| !accepts(*it, ty) && !(is_truth && *it == Elementary::Bool))?;
+            let takes = takes.filter(|it| !(accepts(*it, ty) || is_truth && *it == Elementary::Bool))?;
             Some(format!("is {}, and `{}` is {}", takes.name(), argument.text, ty.name()))
         }
         Passed::Object(id) => {

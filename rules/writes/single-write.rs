@@ -44,10 +44,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let is_kept = uses.object.class != Class::Output;
         let reading = LazyCell::new(|| drives::ReadingCalls::new(cx.program, uses));
         let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
-            drives::override_each_other(a, b)
-                && !drives::of_one_instance(cx.program, a, b)
-                && !(is_kept && reading.between(a, b))
-                && ![a, b].iter().all(|it| drives::is_of_cleared_table(cx.program, it, cx.neighbours(at)))
+            let has_effect = is_kept && reading.between(a, b)
+                || [a, b].iter().all(|it| drives::is_of_cleared_table(cx.program, it, cx.neighbours(at)));
+            drives::override_each_other(a, b) && !drives::of_one_instance(cx.program, a, b) && !has_effect
         };
         if let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))
