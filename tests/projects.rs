@@ -444,3 +444,76 @@ fn places_in_a_project() {
     assert_eq!(logical["fullyQualifiedName"], "MAST - module 0, place 22: %MW5 R");
     assert!(result["message"]["text"].as_str().is_some_and(|it| it.contains("(MAST - module 0, place 22: %MW5 R)")));
 }
+
+const SYMLIST: [(&str, u8); 5] = [("_SKZ", 24), ("_OPIEC", 12), ("_OPHIST", 12), ("_DATATYP", 10), ("_COMMENT", 80)];
+
+/// A STEP 7 project as its tool leaves it on disk: the file of the project, sources in numbered folders, the symbol table in
+/// a numbered folder of its own, and tables of the tool.
+fn step7_project(root: &Path, sources: &[(&str, &str)], symbols: &[&[&str]]) {
+    let file = |path: &str, bytes: &[u8]| {
+        let path = root.join(path);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, bytes).expect("a file");
+    };
+    file("plant.s7p", b"\x00\x01plant\x00 no text");
+    for (path, text) in sources {
+        file(path, text.as_bytes());
+    }
+    file("s7asrcom/S7CNTREF.DBF", &table(&[("ID", 5)], &[&["1"]]));
+    file("YDBs/SYMLISTS.DBF", &table(&[("_DBPATH", 10)], &[&["10394"]]));
+    file("YDBs/10394/SYMLIST.DBF", &table(&SYMLIST, symbols));
+    file("ombstx/offline/00000001/BAUSTEIN.DBF", &table(&[("ID", 5)], &[]));
+}
+
+#[test]
+fn a_project_folder_of_step_7() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let main = "ORGANIZATION_BLOCK OB 1\nBEGIN\nNETWORK\n      CALL \"Pumps\"\n      U     \"Start\"\n      =     \"Pump\"\nEND_ORGANIZATION_BLOCK\n";
+    // In the other mnemonic set, and by the address: it is the same pump.
+    let pumps = "FUNCTION FC 1 : VOID\nBEGIN\nNETWORK\n      A     I 0.1;\n      =     Q 4.0;\n      A     \"Missing\";\n      =     \"L\u{e4}mpchen\";\nEND_FUNCTION\n";
+    let sources = [("s7asrcom/00000001/00000001.AWL", main), ("s7asrcom/00000001/00000002.awl", pumps)];
+    let symbols: [&[&str]; 5] = [
+        &["Start", "I       0.0", "E       0.0", "BOOL", ""],
+        &["Pump", "Q       4.0", "A       4.0", "BOOL", "north"],
+        &["Pumps", "FC      1", "FC      1", "FC      1", ""],
+        &["L\u{e4}mpchen", "Q       4.1", "A       4.1", "BOOL", ""],
+        &["Old", "", "A       4.7", "BOOL", ""],
+    ];
+    step7_project(&folder.path().join("plant"), &sources, &symbols);
+    // Beside it, one with other names for the same addresses.
+    let other: [&[&str]; 1] = [&["Fan", "Q       4.0", "A       4.0", "BOOL", ""]];
+    let fan = [(
+        "S7ASRCOM/00000007/1.AWL",
+        "FUNCTION FC 1 : VOID\nBEGIN\nNETWORK\n      U     E 0.0\n      =     \"Fan\"\n      U     \"Pump\"\n      S     M 0.0\nEND_FUNCTION\n",
+    )];
+    step7_project(&folder.path().join("fans"), &fan, &other);
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,B012,N004,X001"]);
+    let lines: Vec<&str> = out.lines().collect();
+    let expected = [
+        "fans/S7ASRCOM/00000007/1.AWL:6:13: B012[call-parameter] error: `\"Pump\"` is not in the symbol table [FC1]",
+        "plant/YDBs/10394/SYMLIST.DBF:5:2: N004[symbol-unused] note: the program does not use `Old`, the symbol of `A4.7` [file]",
+        "plant/s7asrcom/00000001/00000002.awl:5:13: W001[single-write] warning: `\"Pump\"` (`Q4.0`) is assigned in more than one \
+         place [FC1]",
+        "plant/s7asrcom/00000001/00000002.awl:6:13: B012[call-parameter] error: `\"Missing\"` is not in the symbol table [FC1]",
+    ];
+    assert_eq!(lines[..lines.len() - 1], expected);
+    assert!(lines[lines.len() - 1].starts_with("5 files, 3 programs and blocks"), "{out}");
+    // Both places of the pump, each in its source.
+    let (out, _) = run(folder.path(), &["--format", "json", "--select", "W001"]);
+    let report: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+    let finding = &report["findings"][0];
+    assert_eq!(finding["related"][0]["path"], "plant/s7asrcom/00000001/00000001.AWL");
+    assert_eq!(finding["related"][0]["start"]["line"], 6);
+    // Compiled blocks are not read: what is missing may be in them.
+    let blocks = folder.path().join("plant/ombstx/offline/00000001/SUBBLK.DBF");
+    fs::write(blocks, table(&[("ID", 5)], &[])).expect("a file");
+    let (out, _) = run(folder.path(), &["--format", "concise", "--select", "W001,B012,N004,X001"]);
+    let lines: Vec<&str> = out.lines().collect();
+    let unread =
+        "plant/ombstx/offline/00000001/SUBBLK.DBF: not read: compiled STEP 7 blocks (SUBBLK.DBF) is not supported";
+    assert_eq!(lines[..lines.len() - 1], [expected[0], expected[2], unread]);
+    // Without its table, the symbols are names that nothing resolves, and the pump is driven once.
+    fs::remove_file(folder.path().join("plant/YDBs/10394/SYMLIST.DBF")).expect("a file");
+    let (out, _) = run(&folder.path().join("plant"), &["--format", "concise", "--select", "W001,B012,N004,X001"]);
+    assert_eq!(out.lines().filter(|it| it.contains("[FC1]")).count(), 0, "{out}");
+}

@@ -10,8 +10,9 @@ use plclint::db::{self, Input};
 use plclint::lint::settings::{Folders, Overrides, Settings};
 use plclint::model::entity::Family;
 use plclint::model::lower;
-use plclint::source::detect::Dialect;
+use plclint::source::detect::{Detected, Dialect};
 use plclint::source::entity_from_address;
+use plclint::source::split::{SplitHint, split};
 use plclint::syntax::{self, Language, Mnemonics};
 use proptest::prelude::*;
 
@@ -256,6 +257,69 @@ fn a_step_is_a_call() {
     assert_eq!(found(&format!("{block}{main}{start}")), [""; 0], "its timer keeps each step on");
 }
 
+/// A step as a function block: its bit is what the instance keeps.
+const STEP: &str = "FUNCTION_BLOCK FB 2\nVAR_INPUT\n  set : BOOL;\n  reset : BOOL;\nEND_VAR\nVAR_OUTPUT\n  x : BOOL;\nEND_VAR\nVAR\n  \
+                    entry : BOOL;\nEND_VAR\nBEGIN\nNETWORK\nU #set\nS #x\nU #reset\nR #x\nU #x\nFP #entry\nS M99.0\nEND_FUNCTION_BLOCK\n";
+
+/// Instances that a function block declares, of the block of the course and of one that keeps its step itself. In the
+/// latter, the transitions are computed before any step is, so that none is passed.
+#[test]
+fn steps_are_instances() {
+    let instances = "VAR\n  s0 : FB 2;\n  s1 : FB 2;\n  s2 : FB 2;\nEND_VAR\nVAR_TEMP\n  t0 : BOOL;\n  t1 : BOOL;\n  t2 : BOOL;\n  \
+                     start : BOOL;\nEND_VAR\n";
+    let transitions_of = "U #s0.x\nU E0.0\n= #t0\nU #s1.x\nU E0.1\n= #t1\nU #s2.x\nU E0.2\n= #t2\nUN #s0.x\nUN #s1.x\nUN \
+                          #s2.x\nO #t2\n= #start\n";
+    let calls = "CALL #s0 (set := #start, reset := #t0)\nCALL #s1 (set := #t0, reset := #t1)\nCALL #s2 (set := #t1, reset := #t2)\n";
+    let block = format!("FUNCTION_BLOCK FB 10\n{instances}BEGIN\nNETWORK\n{transitions_of}{calls}END_FUNCTION_BLOCK\n");
+    let main = ob(1, "CALL FB 10, DB 10\n");
+    let blocks = [("FB2", STEP.to_owned()), ("FB10", block.clone()), ("OB1", main.clone())];
+    let expected = transitions(&[(&["#s0.x"], &["#s1.x"]), (&["#s1.x"], &["#s2.x"]), (&["#s2.x"], &["#s0.x"])]);
+    assert_eq!(recovered(&blocks), [(names(&["#s0.x", "#s1.x", "#s2.x"]), expected.clone())]);
+    let data = "DATA_BLOCK DB 10\nFB 10\nBEGIN\nEND_DATA_BLOCK\n";
+    let clean = found(&format!("{STEP}{block}{data}{main}"));
+    assert_eq!(clean, [""; 0], "an instance is no other one");
+
+    // The step takes itself back from the one before: from the last step to the first, none is passed.
+    let call = |at: u32| format!("CALL #s{at} (previous := #s{}.x, condition := M5.{at})\n", (at + 2) % 3);
+    let judged = |calls: [u32; 3]| {
+        let start = format!("UN #s0.x\nUN #s1.x\nUN #s2.x\nS #s0.x\n{CONDITIONS}");
+        let calls: String = calls.map(call).concat();
+        let block = format!(
+            "FUNCTION_BLOCK FB 10\n{}BEGIN\nNETWORK\n{start}{calls}END_FUNCTION_BLOCK\n",
+            instances.replace("FB 2", "FB 3")
+        );
+        found(&format!("{TAKING_STEP}{block}{data}{main}"))
+    };
+    assert_eq!(judged([2, 1, 0]), [""; 0]);
+    assert_eq!(judged([1, 2, 0]), ["Q001"]);
+}
+
+/// Where the loop closes, they exclude each other.
+const CONDITIONS: &str = "UN E0.2\n= M5.0\nU E0.1\n= M5.1\nU E0.2\n= M5.2\n";
+
+/// A step that is given the one before it.
+const TAKING_STEP: &str = "FUNCTION_BLOCK FB 3\nVAR_INPUT\n  condition : BOOL;\nEND_VAR\nVAR_OUTPUT\n  x : BOOL;\nEND_VAR\nVAR_IN_OUT\n  \
+                           previous : BOOL;\nEND_VAR\nBEGIN\nNETWORK\nU #previous\nU #condition\nS #x\nR #previous\nEND_FUNCTION_BLOCK\n";
+
+/// The same with a data block for each, as other blocks see them.
+#[test]
+fn steps_are_data_blocks() {
+    let data = |n: u32| format!("DATA_BLOCK DB {n}\nFB 2\nBEGIN\nEND_DATA_BLOCK\n");
+    let code = "U DB20.x\nU E0.0\n= M0.0\nU DB21.x\nU E0.1\n= M0.1\nU DB22.x\nU E0.2\n= M0.2\nCALL FB 2, DB 20 (set := M0.2, \
+                reset := M0.0)\nCALL FB 2, DB 21 (set := M0.0, reset := M0.1)\nCALL FB 2, DB 22 (set := M0.1, reset := M0.2)\n";
+    let (main, start) = (ob(1, code), ob(100, "SET\nS DB20.x\n"));
+    let text = [STEP, &data(20), &data(21), &data(22), &main, &start].concat();
+    assert_eq!(found(&text), [""; 0]);
+    let data = |n: u32| data(n).replace("FB 2", "FB 3");
+    let judged = |calls: [u32; 3]| {
+        let call = |at: u32| format!("CALL FB 3, DB 2{at} (previous := DB2{}.x, condition := M5.{at})\n", (at + 2) % 3);
+        let main = ob(1, &format!("{CONDITIONS}{}", calls.map(call).concat()));
+        found(&[TAKING_STEP, &data(20), &data(21), &data(22), &main, &start].concat())
+    };
+    assert_eq!(judged([2, 1, 0]), [""; 0]);
+    assert_eq!(judged([1, 2, 0]), ["Q001"]);
+}
+
 /// The sequence in one block, its conditions in another one, its outputs in a third.
 #[test]
 fn blocks_in_the_order_of_their_calls() {
@@ -371,6 +435,30 @@ fn graphs_share_their_tables() {
     assert_eq!(shapes.iter().map(|it| (it.0.len(), it.1.len())).collect::<Vec<_>>(), [(3, 3), (3, 3)]);
     let kept = second.replace("/ L.0 T.MW126 T.MW124 ", "");
     assert_eq!(found(&(both(&first, &kept) + &start)), ["Q007", "Q007"]);
+}
+
+/// Three graphs by equations, whose tables lie as far from one another: each is one, forced and frozen or not.
+#[test]
+fn graphs_of_the_corpus() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus/programs/bidons-s5/bidons.s5");
+    let text = std::fs::read_to_string(path).expect("a program of the corpus");
+    let language = Language::Step5(Mnemonics::German);
+    let hint = SplitHint { entity: None, mnemonics: Some(Mnemonics::German) };
+    let facts: Vec<UnitFacts> = split(&text, Detected::Step5, &hint)
+        .into_iter()
+        .map(|it| {
+            let part = &text[std::ops::Range::<usize>::from(it.range)];
+            let parse = syntax::parse(language, part);
+            assert_eq!(parse.errors(), [], "{part}");
+            UnitFacts::new(&lower::lower(parse.syntax(), part, it.entity, language))
+        })
+        .collect();
+    let program = ProgramIndex::new(Family::Step5, facts.iter().collect());
+    let sequences = program.sequences();
+    let shapes: Vec<(usize, usize, usize)> =
+        sequences.list.iter().map(|it| (it.steps.len(), it.transitions.len(), it.starts.len())).collect();
+    assert_eq!(shapes, [(4, 7, 1), (4, 4, 1), (4, 4, 1)]);
+    assert_eq!(sequences.faults.len(), 0, "{:?}", sequences.faults);
 }
 
 /// Lines that the document asks for, each left out or changed.
@@ -533,7 +621,7 @@ struct Drawn {
 
 type Steps = BTreeSet<usize>;
 
-/// All situations by the rules of evolution.
+/// All situations by the rules of evolution, of branches of one step the first that can be taken.
 fn situations(drawn: &[Drawn]) -> BTreeSet<Steps> {
     let mut known = BTreeSet::new();
     let mut open: Vec<Steps> = vec![[0].into()];
@@ -542,12 +630,13 @@ fn situations(drawn: &[Drawn]) -> BTreeSet<Steps> {
             continue;
         }
         for inputs in 0..8 {
-            let crossed = drawn.iter().filter(|it| it.from.is_subset(&steps) && holds(it.receptivity, inputs));
             let (mut off, mut on) = (Steps::new(), Steps::new());
-            crossed.for_each(|it| {
-                off.extend(&it.from);
-                on.extend(&it.to);
-            });
+            for it in drawn.iter().filter(|it| it.from.is_subset(&steps) && holds(it.receptivity, inputs)) {
+                if it.from.is_disjoint(&off) {
+                    off.extend(&it.from);
+                    on.extend(&it.to);
+                }
+            }
             open.push(steps.difference(&off).chain(&on).copied().collect());
         }
     }

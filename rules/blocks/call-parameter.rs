@@ -7,9 +7,10 @@ use crate::analysis::parameters::{accepts, described, fits};
 use crate::analysis::program::{GlobalCall, ProgramIndex};
 use crate::lint::nearest::nearest;
 use crate::lint::{ProgramCx, Sink};
-use crate::model::entity::BlockKind;
+use crate::model::entity::{BlockKind, BlockName};
 use crate::model::layout::{Elementary, Field};
-use crate::model::object::{Area, Class};
+use crate::model::object::step7::field;
+use crate::model::object::{Area, Class, Object};
 use crate::model::symbols::key;
 use crate::model::unit::{Argument, Passed, Section};
 use crate::syntax::Language;
@@ -81,7 +82,9 @@ fn flaw(program: &ProgramIndex<'_>, call: &GlobalCall<'_>, formal: &Field, argum
             Some(format!("takes a place to write to, and `{}` is a constant", argument.text))
         }
         Passed::Constant(Some(ty)) => {
-            let takes = takes.filter(|it| !accepts(*it, ty))?;
+            // TIA Portal writes FALSE and TRUE so.
+            let is_truth = matches!(argument.text.as_str(), "0" | "1");
+            let takes = takes.filter(|it| !(accepts(*it, ty) || is_truth && *it == Elementary::Bool))?;
             Some(format!("is {}, and `{}` is {}", takes.name(), argument.text, ty.name()))
         }
         Passed::Object(id) => {
@@ -93,15 +96,31 @@ fn flaw(program: &ProgramIndex<'_>, call: &GlobalCall<'_>, formal: &Field, argum
     }
 }
 
+/// The last of the Latin letters, some of which every code page has.
+const LAST_LATIN: char = '\u{24F}';
+
 /// Symbols in quotes that no row of the program's table has: the first use of each.
 fn unknown_symbols(program: &ProgramIndex<'_>, sink: &mut Sink<'_, Site>) {
     let declared = program.units.iter().flat_map(|it| &it.symbols).map(|it| key(&it.name));
     let declared: FxHashSet<_> = declared.collect();
+    // A table with no letter of the alphabet that a symbol is in was read in another encoding than its own.
+    let is_foreign = |it: &str| it.chars().any(|it| it > LAST_LATIN && it.is_alphabetic());
+    let reads_foreign = declared.iter().any(|it| is_foreign(it));
+    // A data block that is missing is a matter of blocks.
+    let data_block = |it: &'_ Object| match &it.footprint.area {
+        Area::Data(BlockName::Symbol(name)) => Some(name.clone()),
+        _ => match field(it)?.0 {
+            BlockName::Symbol(name) => Some(name),
+            BlockName::Number(..) => None,
+        },
+    };
+    let blocks: FxHashSet<_> = program.objects.iter().filter_map(|it| data_block(it.object)).collect();
     for it in &program.objects {
         let quoted = it.object.text.starts_with('"');
         let Area::Symbol(name) = &it.object.footprint.area else { continue };
         // Of one with two addresses, rule N001 tells.
-        if quoted && it.object.class == Class::Symbol && !declared.contains(name) {
+        let is_judged = (reads_foreign || !is_foreign(name)) && !blocks.contains(name);
+        if quoted && it.object.class == Class::Symbol && !declared.contains(name) && is_judged {
             let mut uses = it.uses.iter();
             let Some(first) = uses.next() else { continue };
             sink.report(first.site(), format!("`{}` is not in the symbol table", it.object.text))

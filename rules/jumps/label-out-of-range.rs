@@ -26,7 +26,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
                 sink.report(label.range, message).note(format!("the range is given in {}", range.source));
             }
         }
-        if let Some(length) = cx.target.label_length() {
+        if let Some(length) = cx.target.label_length().filter(|_| !cx.model.of_tia_portal) {
             if text.chars().count() > length.value as usize {
                 let message = format!("label `{text}` has more than {} characters", length.value);
                 sink.report(label.range, message).note(format!("the length is given in {}", length.source));

@@ -1,5 +1,7 @@
 //! W001: a bit driven by assignment in more than one place.
 
+use std::cell::LazyCell;
+
 use crate::analysis::Site;
 use crate::analysis::program::GlobalUse;
 use crate::analysis::{coactive, drives};
@@ -27,13 +29,24 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         // A bit that only takes the outputs of calls which nobody wants is a waste basket.
         let is_sink =
             uses.object.class != Class::Output && !uses.is_read() && writes.iter().all(|it| it.mode == Mode::Output);
-        if writes.is_empty() || is_sink {
+        // What was not understood may read the bit between two writes. Actions of a chart are apart from one another.
+        let may_read = |it: &GlobalUse<'_>| {
+            let unit = cx.program.units[it.unit as usize];
+            unit.has_gaps && !unit.language.is_chart()
+        };
+        let is_hidden = uses.object.class != Class::Output && writes.iter().any(may_read);
+        if writes.is_empty() || is_sink || is_hidden {
             continue;
         }
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
+        // Only the last value of an output gets to the process.
+        let is_kept = uses.object.class != Class::Output;
+        let reading = LazyCell::new(|| drives::ReadingCalls::new(cx.program, uses));
         let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
-            drives::override_each_other(a, b) && !drives::of_one_instance(cx.program, a, b)
+            let has_effect = is_kept && reading.between(a, b)
+                || [a, b].iter().all(|it| drives::is_of_cleared_table(cx.program, it, cx.neighbours(at)));
+            drives::override_each_other(a, b) && !drives::of_one_instance(cx.program, a, b) && !has_effect
         };
         if let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))

@@ -1,5 +1,7 @@
 //! Which places drive an object, and which of them can take effect in one scan.
 
+use rustc_hash::{FxHashMap, FxHashSet};
+
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::object::{Class, Type};
 use crate::model::unit::{Callee, Mode};
@@ -15,6 +17,47 @@ pub fn covering<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours
         }
     }
     found
+}
+
+/// Whether the bit that a place drives lies in a table that the block clears as a whole first, so that it computes the
+/// table anew: several graphs may have one table of receptivities (GRF:1191). `neighbours`: objects that share memory with
+/// the bit.
+pub fn is_of_cleared_table(program: &ProgramIndex<'_>, place: &GlobalUse<'_>, neighbours: &[u32]) -> bool {
+    let tables = neighbours.iter().filter_map(|&it| program.objects.get(it as usize));
+    let clears = |it: &GlobalUse<'_>| {
+        it.unit == place.unit && it.it.anchor < place.it.anchor && it.it.constant == Some(0) && !it.it.conditional
+    };
+    tables.filter(|it| it.object.ty != Type::Bool).any(|it| it.with_mode(|it| it == Mode::Store).any(clears))
+}
+
+/// Calls behind which an object is read: places in their units, by unit, in order.
+#[derive(Default)]
+pub struct ReadingCalls(FxHashMap<u32, Vec<u32>>);
+
+impl ReadingCalls {
+    pub fn new(program: &ProgramIndex<'_>, object: &ObjectUses<'_>) -> Self {
+        let mut open: Vec<u32> = object.with_mode(Mode::reads).map(|it| it.unit).collect();
+        let mut seen: FxHashSet<u32> = open.iter().copied().collect();
+        let mut found = Self::default();
+        while let Some(unit) = open.pop() {
+            let callers = program.callers.get(unit as usize).into_iter().flatten();
+            for call in callers.filter_map(|it| program.calls.get(*it as usize)) {
+                found.0.entry(call.unit).or_default().push(call.it.anchor);
+                if seen.insert(call.unit) {
+                    open.push(call.unit);
+                }
+            }
+        }
+        found.0.values_mut().for_each(|it| it.sort_unstable());
+        found
+    }
+
+    /// Whether one of them stands between two places: the value of the first is handed to the block that is called.
+    pub fn between(&self, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
+        let (first, last) = (a.it.anchor.min(b.it.anchor), a.it.anchor.max(b.it.anchor));
+        let Some(calls) = self.0.get(&a.unit).filter(|_| a.unit == b.unit) else { return false };
+        calls.get(calls.partition_point(|it| *it < first)).is_some_and(|it| *it < last)
+    }
 }
 
 /// Whether one of two assignments undoes the other. Two constants under a condition store a value, as set and reset do,

@@ -495,12 +495,20 @@ impl<'p, 'a> Net<'p, 'a> {
 
     /// What it reaches from there and from what the program sets.
     pub fn reach_all(&self, component: &Component) -> Reached {
+        self.explore(component, &self.starts(component), false)
+    }
+
+    /// The same when branches of one step are never taken together.
+    pub fn reach_apart(&self, component: &Component) -> Reached {
+        self.explore(component, &self.starts(component), true)
+    }
+
+    fn starts(&self, component: &Component) -> Vec<Vec<Node>> {
         let own = |it: &Vec<Node>| -> Vec<Node> {
             it.iter().copied().filter(|it| component.nodes.binary_search(it).is_ok()).collect()
         };
         let presets = self.presets.iter().map(own).filter(|it| !it.is_empty());
-        let starts: Vec<Vec<Node>> = [component.initial.clone()].into_iter().chain(presets).collect();
-        self.explore(component, &starts, false)
+        [component.initial.clone()].into_iter().chain(presets).collect()
     }
 
     fn explore(&self, component: &Component, starts: &[Vec<Node>], apart: bool) -> Reached {
@@ -639,11 +647,12 @@ impl<'p, 'a> Net<'p, 'a> {
     /// The situations in which a transition is valid, as their active steps.
     pub fn valid_in<'s>(
         &'s self,
-        part: &'s Part,
+        component: &'s Component,
+        reached: &'s Reached,
         crossing: usize,
     ) -> impl Iterator<Item = impl Iterator<Item = Node> + 's> + 's {
-        let all = part.all.valid_in.get(&crossing).into_iter().flatten();
-        all.map(|it| self.active(&part.component, &part.all.situations[*it as usize]))
+        let all = reached.valid_in.get(&crossing).into_iter().flatten();
+        all.map(|it| self.active(component, &reached.situations[*it as usize]))
     }
 
     /// Whether a transition is valid in some situation.

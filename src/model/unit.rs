@@ -639,6 +639,8 @@ pub struct UnitModel {
     pub has_gaps: bool,
     /// Somewhere a floating-point number meets a number that may not be one.
     pub mixes_floats: bool,
+    /// TIA Portal exported the unit: some of its limits are wider than those of STEP 7.
+    pub of_tia_portal: bool,
     /// What the unit holds of a chart.
     pub chart: Option<Box<Chart>>,
     /// The parameters and variables of a DFB type.

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
-use crate::model::expr::{Expr, ExprId, Exprs, Operator, Places, Pool};
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Places, Pool};
 use crate::model::object::Class;
 use crate::model::unit::{Pin, StatementKind};
 
@@ -20,6 +20,8 @@ pub struct CodeFacts {
     /// Whether a bit is set and another one reset under one condition, several bits are set, or a word is combined with
     /// another one.
     pub may_evolve: bool,
+    /// Whether it sets a bit of its own and resets it: each of its calls may be a step.
+    pub may_be_step: bool,
 }
 
 /// Conditions and values are places in the pool, objects indices into the unit's objects.
@@ -113,8 +115,9 @@ impl CodeFacts {
         }
         let (pool, places) = model.exprs.cut_all(acts.iter().flat_map(Drawn::conditions));
         let may_evolve = may_evolve(model, &acts);
+        let may_be_step = may_be_step(model, &acts);
         let acts = acts.iter().map(|it| it.place(&places)).collect();
-        Some(Box::new(Self { acts, pool, may_evolve }))
+        Some(Box::new(Self { acts, pool, may_evolve, may_be_step }))
     }
 }
 
@@ -152,6 +155,18 @@ impl Drawn {
             Self::Call(call, path, when) => Act::Call { call, path: at(path), when: at(when) },
         }
     }
+}
+
+/// See [`CodeFacts::may_be_step`].
+fn may_be_step(model: &UnitModel, acts: &[Drawn]) -> bool {
+    let own = |wanted: How| {
+        let is_own = move |object: u32| model.object(ObjectId(object)).class == Class::LocalName;
+        acts.iter().filter_map(move |it| match *it {
+            Drawn::Write(how, object, ..) if how == wanted && is_own(object) => Some(object),
+            _ => None,
+        })
+    };
+    own(How::Set).any(|set| own(How::Reset).any(|it| it == set))
 }
 
 /// See [`CodeFacts::may_evolve`].

@@ -309,15 +309,17 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
     }
 }
 
-/// By transition: the situations in which it is valid. Where nothing says how the sequence starts, its own steps alone.
+/// By transition: the situations in which it is valid. That branches of one step can be taken together is a finding of its
+/// own, and what follows from it is none. Where nothing says how the sequence starts, its own steps alone.
 fn situations(trace: &Trace<'_>, sequence: &Sequence<'_>) -> Vec<Vec<Vec<usize>>> {
     let chart = sequence.chart();
     let study = sequence.study(trace.family, &chart);
     let mut valid: Vec<Vec<Vec<usize>>> = vec![Vec::new(); sequence.transitions.len()];
     for part in &study.parts {
+        let reached = study.net.reach_apart(&part.component);
         for &crossing in &part.component.crossings {
             let Some(list) = valid.get_mut(study.net.crossings[crossing].transition) else { continue };
-            let all = study.net.valid_in(part, crossing).take(MOST_SITUATIONS);
+            let all = study.net.valid_in(&part.component, &reached, crossing).take(MOST_SITUATIONS);
             list.extend(all.map(|it| it.map(|it| it as usize).collect::<Vec<usize>>()));
         }
     }

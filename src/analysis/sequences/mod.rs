@@ -10,7 +10,7 @@ pub mod set_reset;
 pub mod tables;
 pub mod trace;
 
-use self::code::How;
+use self::code::{CodeFacts, How};
 use self::judge::{Deviation, Judge};
 use self::set_reset::{Found, FoundTransition};
 use self::trace::{Event, Trace};
@@ -87,7 +87,13 @@ impl SequenceStep<'_> {
 
 impl<'a> Sequences<'a> {
     pub fn new(program: &ProgramIndex<'a>) -> Self {
-        if !program.units.iter().any(|it| it.code.as_ref().is_some_and(|it| it.may_evolve)) {
+        /// Fewer calls of one block are no steps that follow one another.
+        const FEWEST_CALLS: usize = 2;
+        let may_evolve = program.units.iter().zip(&program.callers).any(|(unit, callers)| {
+            let is_step = |it: &CodeFacts| it.may_be_step && callers.len() >= FEWEST_CALLS;
+            unit.code.as_deref().is_some_and(|it| it.may_evolve || is_step(it))
+        });
+        if !may_evolve {
             return Self::default();
         }
         let mut trace = Trace::of_scan(program);
@@ -168,7 +174,7 @@ impl<'a> Sequence<'a> {
         }
         let mut transitions = Vec::new();
         for it in &found.transitions {
-            let site = trace.events.get(it.event()).map_or(Site { unit: 0, anchor: 0 }, |it| it.site);
+            let site = trace.events.get(it.place()).map_or(Site { unit: 0, anchor: 0 }, |it| it.site);
             let receptivity = trace.exprs.cut(it.receptivity, MOST);
             transitions.push(SequenceTransition {
                 unit: site.unit,

@@ -46,6 +46,11 @@ impl FoundTransition {
         self.sets.iter().chain(&self.resets).map(|it| it.1).min().unwrap_or(0)
     }
 
+    /// Where it stands: its first set, or its first reset.
+    pub fn place(&self) -> usize {
+        self.sets.iter().map(|it| it.1).min().unwrap_or_else(|| self.event())
+    }
+
     pub fn set_of(&self, step: usize) -> Option<usize> {
         self.sets.iter().find(|it| it.0 == step).map(|it| it.1)
     }

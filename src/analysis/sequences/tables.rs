@@ -171,11 +171,11 @@ fn by_step(trace: &Trace<'_>) -> Vec<Words> {
     found
         .into_iter()
         .filter(|it| it.1.len() >= FEWEST)
-        .filter_map(|((distance, _), bits)| {
+        .flat_map(|((distance, _), bits)| {
             let places = bits.iter().map(|it| &trace.object(*it).footprint);
-            let first = places.clone().map(|it| it.start).min()? / 8 * 8;
-            let last = places.clone().map(|it| it.start).max()?;
-            let area = places.map(|it| it.area.clone()).next()?;
+            apart(places.collect(), distance).into_iter().map(move |it| (distance, it))
+        })
+        .filter_map(|(distance, (area, first, last))| {
             let bits = (last / 8 * 8 + 8).checked_sub(first)?;
             let before = u32::try_from(i64::from(first) + distance).ok()?;
             let (now, before) =
@@ -183,6 +183,22 @@ fn by_step(trace: &Trace<'_>) -> Vec<Words> {
             (!now.overlaps(&before)).then_some(Words { now, before, on: None, off: None, equation: None, since: None })
         })
         .collect()
+}
+
+/// The tables that bits lie in, when those of the scan before are so many bits away: a table ends where another one
+/// begins. Several graphs have their tables at one distance (GRF:1170).
+fn apart(mut places: Vec<&Footprint>, distance: i64) -> Vec<(Area, u32, u32)> {
+    places.sort_unstable_by_key(|it| it.start);
+    let mut tables: Vec<(Area, u32, u32)> = Vec::new();
+    for place in places {
+        match tables.last_mut() {
+            Some((_, first, last)) if i64::from(place.start) - i64::from(*first) < distance.abs() => {
+                *last = place.start
+            }
+            _ => tables.push((place.area.clone(), place.start / 8 * 8, place.start)),
+        }
+    }
+    tables
 }
 
 /// The words around two stretches of one size that the program names as such, else the stretches.

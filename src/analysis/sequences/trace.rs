@@ -11,11 +11,12 @@ use smol_str::SmolStr;
 use super::code::{Act, How};
 use crate::analysis::Site;
 use crate::analysis::conditions::{Answer, Objects, Space};
+use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::{Context, ProgramIndex};
 use crate::model::entity::{BlockName, Family};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
 use crate::model::object::{Area, Class, Footprint, Object, Type, step7};
-use crate::model::unit::Formal;
+use crate::model::unit::{Callee, Formal};
 
 /// A write of a scan.
 #[derive(Debug, Clone)]
@@ -64,9 +65,19 @@ struct Table<'a> {
     objects: Vec<&'a Object>,
     shared: FxHashMap<(&'a Footprint, Type, bool), ObjectId>,
     own: FxHashMap<(u32, &'a Footprint), ObjectId>,
-    scopes: FxHashMap<(u32, Option<&'a BlockName>), u32>,
+    scopes: FxHashMap<(u32, Instance<'a>), u32>,
     /// Objects of the program that share memory with one.
     neighbours: Vec<Vec<ObjectId>>,
+}
+
+/// Where the variables of a run of a block lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Instance<'a> {
+    /// Nowhere but in the run.
+    None,
+    Block(&'a BlockName),
+    /// In those of the block that declares the instance: its scope, and the name as the call writes it.
+    Local(u32, &'a str),
 }
 
 /// What a call gives: the object, and the place where it says so.
@@ -74,6 +85,9 @@ type Binding = FxHashMap<SmolStr, (ObjectId, Site)>;
 
 /// By call: names of parameters in lower case, what is given for them, and the anchors of that.
 type Arguments = FxHashMap<u32, Vec<(SmolStr, ObjectId, u32)>>;
+
+/// By instance that a block declares: the variables of it that the block names, or its caller.
+type Fields = FxHashMap<SmolStr, Vec<(SmolStr, ObjectId)>>;
 
 struct Runner<'p, 'a> {
     program: &'p ProgramIndex<'a>,
@@ -149,7 +163,7 @@ impl<'a> Trace<'a> {
             // What nothing calls may run, too: who calls it was not read.
             if program.is_entry(unit) || program.callers[unit as usize].is_empty() {
                 runner.root = unit;
-                runner.run(unit, None, Exprs::TRUE, &Binding::default());
+                runner.run(unit, Instance::None, Exprs::TRUE, &Binding::default());
             }
         }
         let Runner { table, mut trace, now, .. } = runner;
@@ -279,6 +293,27 @@ impl<'a> Trace<'a> {
     }
 }
 
+/// An instance that a block declares, `#motor`, as the names of its variables begin.
+fn instance_key(name: &str) -> String {
+    name.trim_matches(['#', '"', ' ']).to_lowercase()
+}
+
+fn fields_of(facts: &UnitFacts, ids: &[ObjectId], binding: &Binding) -> Fields {
+    let mut fields = Fields::default();
+    let mut add = |name: &str, id: ObjectId| {
+        if let Some((instance, field)) = name.split_once('.') {
+            fields.entry(instance.into()).or_default().push((field.into(), id));
+        }
+    };
+    binding.iter().for_each(|(name, it)| add(name, it.0));
+    for (fact, id) in facts.objects.iter().zip(ids) {
+        if let Some(name) = step7::local_name(&fact.object) {
+            add(&name, *id);
+        }
+    }
+    fields
+}
+
 fn index(at: usize) -> u32 {
     u32::try_from(at).unwrap_or(u32::MAX)
 }
@@ -303,14 +338,21 @@ impl<'a> Table<'a> {
         Self { objects, shared, own: FxHashMap::default(), scopes: FxHashMap::default(), neighbours }
     }
 
-    fn scope(&mut self, unit: u32, instance: Option<&'a BlockName>) -> u32 {
+    fn scope(&mut self, unit: u32, instance: Instance<'a>) -> u32 {
         let next = index(self.scopes.len());
         *self.scopes.entry((unit, instance)).or_insert(next)
     }
 
-    fn of(&mut self, object: &'a Object, scope: u32) -> ObjectId {
+    /// An object of a run. Other blocks may know a variable of an instance by its place in the data block.
+    fn of(&mut self, object: &'a Object, scope: u32, instance: Instance<'a>) -> ObjectId {
         if let Some(&id) = self.shared.get(&(&object.footprint, object.ty, object.indexed)) {
             return id;
+        }
+        if let (Instance::Block(name), Area::OpenInstance) = (instance, &object.footprint.area) {
+            let place = Footprint { area: Area::Data(name.clone()), ..object.footprint.clone() };
+            if let Some(&id) = self.shared.get(&(&place, object.ty, object.indexed)) {
+                return id;
+            }
         }
         let next = ObjectId(index(self.objects.len()));
         let id = *self.own.entry((scope, &object.footprint)).or_insert(next);
@@ -384,7 +426,7 @@ impl<'a> Runner<'_, 'a> {
         self.assigned.insert(object, (path, value));
     }
 
-    fn run(&mut self, unit: u32, instance: Option<&'a BlockName>, under: ExprId, binding: &Binding) {
+    fn run(&mut self, unit: u32, instance: Instance<'a>, under: ExprId, binding: &Binding) {
         let program = self.program;
         let facts = program.units[unit as usize];
         let Some(code) = facts.code.as_deref() else { return };
@@ -404,11 +446,12 @@ impl<'a> Runner<'_, 'a> {
                     sites.insert(id, site);
                     id
                 }
-                None => self.table.of(&fact.object, scope),
+                None => self.table.of(&fact.object, scope, instance),
             });
         }
         let mut known: Vec<Option<ExprId>> = vec![None; code.pool.len()];
         let mut arguments: Option<Arguments> = None;
+        let mut fields: Option<Fields> = None;
         for act in &code.acts {
             let mut eval = |runner: &mut Self, at: u32, path: ExprId| runner.eval(code, at, &mut known, &ids, path);
             match *act {
@@ -473,11 +516,22 @@ impl<'a> Runner<'_, 'a> {
                     match (target, facts.calls.get(call as usize)) {
                         (Some(target), Some(fact)) => {
                             let site = |object, anchor| sites.get(object).copied().unwrap_or(Site { unit, anchor });
-                            let binding = given
+                            let given = given
                                 .iter()
-                                .map(|(name, object, anchor)| (name.clone(), (*object, site(object, *anchor))))
-                                .collect();
-                            self.run(target, fact.instance.as_ref(), path, &binding);
+                                .map(|(name, object, anchor)| (name.clone(), (*object, site(object, *anchor))));
+                            let (instance, mut binding) = match (&fact.callee, &fact.instance) {
+                                (Callee::LocalInstance(name), _) => {
+                                    let fields = fields.get_or_insert_with(|| fields_of(facts, &ids, binding));
+                                    let here = Site { unit, anchor: fact.anchor };
+                                    let own = fields.get(instance_key(name).as_str()).into_iter().flatten();
+                                    let own = own.map(|(name, id)| (name.clone(), (*id, here)));
+                                    (Instance::Local(scope, name.as_str()), own.collect::<Binding>())
+                                }
+                                (_, Some(name)) => (Instance::Block(name), Binding::default()),
+                                _ => (Instance::None, Binding::default()),
+                            };
+                            binding.extend(given);
+                            self.run(target, instance, path, &binding);
                         }
                         // It may do anything with what it is given.
                         _ => {

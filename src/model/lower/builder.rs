@@ -103,6 +103,7 @@ impl Builder {
             instructions: 0,
             reads_indirectly: false,
             writes_indirectly: false,
+            of_tia_portal: false,
             has_gaps: false,
             mixes_floats: false,
             chart: None,

@@ -16,18 +16,20 @@ use crate::syntax::Mnemonics;
 const LAST_NUMBER: u32 = 65_535;
 
 /// Reads an operand, blanks between its parts or not, in either case: `E 1.0`, `MW0`, `DB5.DBX 2.1`, `"Data".DBW0`, `T 5`,
-/// `M [AR1,P#0.0]`, `==0`. Symbols and `#names` are not operands of this kind.
+/// `M [AR1,P#0.0]`, `==0`. Sources that TIA Portal exports have a percent sign before it. Symbols and `#names` are not
+/// operands of this kind.
 ///
 /// # Errors
 /// [`AddressErrorKind::Malformed`] with the nearest valid form where there is one, which for an operand of the other
 /// mnemonic set is its translation; [`AddressErrorKind::OutOfRange`] for a number that no CPU has.
 pub fn parse(operand: &str, mnemonics: Mnemonics) -> Result<Object, AddressError> {
     let operand = operand.trim();
-    let compact = compact(operand);
-    let found = read(&compact, mnemonics);
-    found.map(|place| place.object(compact.clone())).map_err(|mut error| {
+    let written = compact(operand);
+    let compact = written.strip_prefix('%').unwrap_or(&written);
+    let found = read(compact, mnemonics);
+    found.map(|place| place.object(written.clone())).map_err(|mut error| {
         if error.kind == AddressErrorKind::Malformed {
-            error.suggestion = nearest(&compact, operand.contains([' ', '\t', '\u{a0}']), mnemonics);
+            error.suggestion = nearest(compact, operand.contains([' ', '\t', '\u{a0}']), mnemonics);
         }
         error
     })
@@ -483,6 +485,16 @@ mod tests {
 
     fn db(number: u32) -> BlockName {
         BlockName::Number(BlockKind::Db, number)
+    }
+
+    #[test]
+    fn sources_of_tia_portal() {
+        let cases = [("%I0.1", "I0.1"), ("%DB3.DBB4", "DB3.DBB4"), ("%L 1.0", "L1.0"), ("%QW 4", "QW4"), ("%T5", "T5")];
+        for (percent, plain) in cases {
+            assert_eq!(object(percent, English).footprint, object(plain, English).footprint, "{percent}");
+        }
+        assert!(parse("%%I0.1", English).is_err());
+        assert!(parse("%", English).is_err());
     }
 
     #[test]

@@ -51,6 +51,17 @@ impl<'t> Block<'t> {
     pub fn type_ref(self) -> Option<TypeRef<'t>> {
         self.child().or_else(|| self.header()?.return_type())
     }
+
+    pub fn attributes(self) -> impl Iterator<Item = BlockAttribute<'t>> + use<'t> {
+        self.children()
+    }
+}
+
+impl<'t> BlockAttribute<'t> {
+    /// `{S7_attr := '...'}`
+    pub fn system_attributes(self) -> Option<SyntaxToken<'t>> {
+        self.child_token(SyntaxKind::Attribute)
+    }
 }
 
 impl<'t> BlockHeader<'t> {
@@ -322,10 +333,6 @@ mod testing {
             self.child()
         }
 
-        pub fn attributes(self) -> impl Iterator<Item = BlockAttribute<'t>> + use<'t> {
-            self.children()
-        }
-
         /// The declarations; the `STRUCT` of a data block or type is one of them.
         pub fn sections(self) -> impl Iterator<Item = VarSection<'t>> + use<'t> {
             self.children()
@@ -387,11 +394,6 @@ mod testing {
 
         pub fn value(self) -> Option<SyntaxToken<'t>> {
             self.child_token(SyntaxKind::FreeText)
-        }
-
-        /// `{S7_attr := '...'}`
-        pub fn system_attributes(self) -> Option<SyntaxToken<'t>> {
-            self.child_token(SyntaxKind::Attribute)
         }
     }
 

@@ -917,11 +917,15 @@ impl Grammar<'_, '_> {
                 return Read::Faulty;
             }
         }
-        if !self.at_statement_end() && !self.p.at(LParen) && !self.at_argument() {
+        if !self.at_statement_end() && !matches!(self.p.current(), Some(LParen | Attribute)) && !self.at_argument() {
             self.p.error("expected the parameters or the end of the instruction");
             self.skip_while(|kind| kind != LParen);
         }
         // The parenthesis may stand on the next line: no instruction starts with one.
+        // TIA Portal writes the type of a general block before it: `{time_type := 'Time'}`.
+        while self.p.at(Attribute) {
+            self.p.bump();
+        }
         if self.p.at(LParen) {
             self.closed_arguments();
         } else if self.at_argument() {
@@ -1073,7 +1077,7 @@ impl Grammar<'_, '_> {
         }
     }
 
-    /// `.field[3, #i].x`, and the register-indirect `[AR1, P#0.0]`.
+    /// `.field[3, #i].x`, and the register-indirect `[AR1, P#0.0]`. Of TIA Portal: `:P` behind what is read or written at once.
     fn path(&mut self) -> Read {
         while !self.p.newline_before() {
             match self.p.current() {
@@ -1092,6 +1096,10 @@ impl Grammar<'_, '_> {
                         Some(Read::Done) => {}
                         _ => return Read::Faulty,
                     }
+                }
+                Some(Colon) if self.p.nth(1) == Some(Ident) && self.p.nth_text(1).eq_ignore_ascii_case("P") => {
+                    self.p.bump();
+                    self.p.bump();
                 }
                 _ => break,
             }

@@ -192,6 +192,13 @@ impl Machine {
     }
 }
 
+/// Whether a block has the attribute that TIA Portal gives to every block that it exports. Its addresses tell too.
+pub(super) fn is_of_tia_portal(block: SyntaxNode<'_>) -> bool {
+    let attributes = ast::Block::cast(block).into_iter().flat_map(ast::Block::attributes);
+    let has = |it: &str| it.to_ascii_lowercase().contains("s7_optimized_access");
+    attributes.filter_map(ast::BlockAttribute::system_attributes).any(|it| has(it.text()))
+}
+
 /// Of a data block: the function block whose data it holds.
 pub(super) fn instance_of(block: SyntaxNode<'_>) -> Option<BlockName> {
     let block = ast::Block::cast(block)?;

@@ -30,9 +30,9 @@ use crate::syntax::{AstNode as _, Language, SyntaxElement, SyntaxKind, SyntaxNod
 use crate::target;
 
 use accumulators::{Accumulator, Load, comparison};
-use calls::{OpenBlock, instance_of};
+use calls::{OpenBlock, instance_of, is_of_tia_portal};
 use flow::{Arrival, back_targets, label, label_operand};
-use operands::Operand;
+use operands::{Operand, bare_text};
 use rlo::{LogicString, Nest, Rlo, RloState};
 
 /// Lowers one block or listing.
@@ -122,6 +122,7 @@ impl Machine {
         self.closed = block.kind() == SyntaxKind::Block;
         self.declarations(block);
         self.b.model.instance_of = instance_of(block);
+        self.b.model.of_tia_portal = is_of_tia_portal(block);
         for init in block.children().filter_map(ast::DataInit::cast) {
             self.initial_value(init.value());
         }
@@ -449,6 +450,14 @@ impl Machine {
                     self.load(value, range, mnemonic_text(instr));
                     // What a register holds is there for the taking: losing it loses nothing.
                     self.use_loads(0);
+                }
+            }
+            // What STEP 7 makes of a `CALL` stands between `BLD 1` and `BLD 2` in a print of compiled code (measured). It
+            // keeps the RLO, whatever that is.
+            Op::Display if self.rlo.state != RloState::Known => {
+                if instr.operand().is_some_and(|it| bare_text(&it) == "1") {
+                    let value = self.b.exprs().opaque();
+                    self.rlo = Rlo { state: RloState::Known, value };
                 }
             }
             Op::SwapAddressRegisters | Op::Nop | Op::Display => {}

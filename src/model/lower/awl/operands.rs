@@ -78,7 +78,11 @@ impl Machine {
     }
 
     pub(super) fn operand(&mut self, node: &ast::Operand) -> Operand {
-        let text = bare_text(node);
+        let mut text = bare_text(node);
+        // At once or with the image: the operand is the same.
+        if let Some(bare) = text.strip_suffix(":P").or_else(|| text.strip_suffix(":p")) {
+            text = bare.into();
+        }
         if let Some(known) = self.operands.get(&text) {
             return known.clone();
         }
@@ -121,7 +125,7 @@ impl Machine {
                     }
                 }
                 // Not cached: the index is read each time.
-                let ty = indirect_type(&text);
+                let ty = self.indirect_type(&text);
                 return Operand::Object(self.indirect(&text, ty));
             }
             Some(_) => match known_word(&text) {
@@ -144,6 +148,14 @@ impl Machine {
     fn is_place_dependent(&self, object: ObjectId) -> bool {
         let class = self.b.model.objects[object.0 as usize].class;
         matches!(class, Class::Indirect | Class::PeripheralInput | Class::PeripheralOutput)
+    }
+
+    /// What an operand holds whose place is computed; of an element of an array, its declaration knows.
+    fn indirect_type(&self, text: &str) -> Type {
+        match self.language {
+            Language::Awl(mnemonics) => object::step7::parse(text, mnemonics).map_or(Type::Unknown, |it| it.ty),
+            _ => Type::Unknown,
+        }
     }
 
     pub(super) fn indirect(&mut self, text: &str, ty: Type) -> ObjectId {
@@ -189,7 +201,10 @@ impl Machine {
         }
         let Language::Awl(mnemonics) = self.language else { return Ok(self.b.object(Object::symbol(text))) };
         match object::step7::parse(text, mnemonics) {
-            Ok(object) => Ok(self.b.object(object)),
+            Ok(object) => {
+                self.b.model.of_tia_portal |= text.starts_with('%');
+                Ok(self.b.object(object))
+            }
             Err(error) if error.suggestion.is_none() && is_bare_symbol(text, mnemonics) => {
                 Ok(self.b.object(Object::symbol(text)))
             }
@@ -279,19 +294,6 @@ pub(super) fn constant_type(text: &str) -> Option<Option<Elementary>> {
 /// `"Data".speed`: more than a symbol.
 fn is_field(text: &str) -> bool {
     ["\".", "»."].iter().any(|it| text.contains(it))
-}
-
-/// Size of a place given by a pointer: `MW [...]`, `DBB [...]`, `M [...]`.
-pub(super) fn indirect_type(text: &str) -> Type {
-    let prefix = text.split('[').next().unwrap_or_default().to_ascii_uppercase();
-    match prefix.as_str() {
-        "T" | "C" | "Z" | "DB" | "DI" | "FB" | "FC" => Type::Block,
-        it if it.len() > 1 && it.ends_with('B') => Type::Byte,
-        it if it.ends_with('W') => Type::Word,
-        it if it.len() > 1 && it.ends_with('D') => Type::Double,
-        "" => Type::Unknown,
-        _ => Type::Bool,
-    }
 }
 
 /// A word that is an operand without being an object.
