@@ -11,6 +11,8 @@ use super::chart::ChartFacts;
 use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
 use super::gaps;
+use super::liveness::{self, Lost};
+use super::repeats::Outline;
 use super::sequences::code::CodeFacts;
 use crate::model::UnitModel;
 use crate::model::chart::CodeLanguage;
@@ -159,6 +161,10 @@ pub struct UnitFacts {
     pub cost: Option<Box<UnitCost>>,
     /// Of Siemens blocks: what sequences are recovered from.
     pub code: Option<Box<CodeFacts>>,
+    /// Writes whose value nothing in the unit reads.
+    pub lost: Vec<Lost>,
+    /// What its statements look like, for those who search for repetitions.
+    pub outline: Option<Box<Outline>>,
 }
 
 /// More calls than this in a unit are not compared with one another.
@@ -299,6 +305,8 @@ impl UnitFacts {
             commented: false,
             cost: UnitCost::new(model),
             code: CodeFacts::new(model),
+            lost: liveness::lost(model),
+            outline: None,
         }
     }
 

@@ -20,6 +20,7 @@ pub mod fields;
 pub mod flow;
 pub mod gaps;
 pub mod known;
+pub mod liveness;
 pub mod modules;
 pub mod operands;
 pub mod parameters;
@@ -27,8 +28,10 @@ pub mod priority;
 pub mod processing;
 pub mod program;
 pub mod reach;
+pub mod repeats;
 pub mod sequences;
 pub mod size;
+pub mod stated;
 pub mod symbols;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.
