@@ -413,32 +413,32 @@ fn agree(mix: &Mix, programs: u64, percent: u32) {
 fn logic_strings() {
     // `O` twice: also without operand.
     let others = &["U(", "UN(", "O(", "ON(", "X(", "XN(", "NOT", "SET", "CLR", "SAVE", "O", "FP", "FN"];
-    agree(&Mix { checks: CHECKS, others, jumps: &[], most: 24 }, 1000, 75);
+    agree(&Mix { checks: CHECKS, others, jumps: &[], most: 24 }, 400, 75);
 }
 
 #[test]
 fn jumps_and_block_ends() {
     let jumps = &["SPA", "SPB", "SPBN", "SPBB", "SPBNB", "SPBI", "SPBIN", "BEB"];
-    agree(&Mix { checks: &["U", "UN", "O"], others: &["SET", "CLR", "NOT", "SAVE"], jumps, most: 24 }, 1000, 50);
+    agree(&Mix { checks: &["U", "UN", "O"], others: &["SET", "CLR", "NOT", "SAVE"], jumps, most: 24 }, 400, 50);
 }
 
 #[test]
 fn jumps_into_and_out_of_parentheses() {
     let others = &["U(", "UN(", "O(", "ON(", "X(", "O", "NOT", "SAVE", "SET"];
-    agree(&Mix { checks: CHECKS, others, jumps: &["SPA", "SPB", "SPBN", "SPBNB", "SPBI"], most: 30 }, 1500, 40);
+    agree(&Mix { checks: CHECKS, others, jumps: &["SPA", "SPB", "SPBN", "SPBNB", "SPBI"], most: 30 }, 600, 40);
 }
 
 #[test]
 fn master_control_relay() {
     let others = &["MCRA", "MCRA", "MCRD", "MCR(", ")MCR", "SET", "L", "T", "T"];
-    agree(&Mix { checks: &["U", "UN", "O"], others, jumps: &[], most: 24 }, 1000, 60);
-    agree(&Mix { checks: &["U", "UN", "O"], others, jumps: &["SPB", "SPBN"], most: 24 }, 1000, 40);
+    agree(&Mix { checks: &["U", "UN", "O"], others, jumps: &[], most: 24 }, 400, 60);
+    agree(&Mix { checks: &["U", "UN", "O"], others, jumps: &["SPB", "SPBN"], most: 24 }, 400, 40);
 }
 
 #[test]
 fn accumulators_and_jump_lists() {
     let others = &["L", "L", "L", "T", "TAK", ">I", "==I", "SPL", "SET"];
-    agree(&Mix { checks: &["U", "O"], others, jumps: &["SPA", "SPB", "SPBN"], most: 30 }, 1000, 40);
+    agree(&Mix { checks: &["U", "O"], others, jumps: &["SPA", "SPB", "SPBN"], most: 30 }, 400, 40);
 }
 
 #[test]
@@ -447,5 +447,5 @@ fn everything_at_once() {
         "U(", "O(", "X(", "O", "NOT", "SET", "CLR", "SAVE", "FP", "L", "T", "==I", "MCRA", "MCRD", "MCR(", ")MCR", "SPL",
     ];
     let jumps = &["SPA", "SPB", "SPBN", "SPBB", "SPBNB", "SPBI", "SPBIN", "BEB", "BEA"];
-    agree(&Mix { checks: CHECKS, others, jumps, most: 40 }, 2000, 30);
+    agree(&Mix { checks: CHECKS, others, jumps, most: 40 }, 600, 30);
 }
