@@ -101,6 +101,7 @@ impl Page {
         };
         let scope = match self.get("scope") {
             "unit" => "Unit",
+            "object" => "Object",
             "program" => "Program",
             "file" => "File",
             other => panic!("{}: scope {other}", self.path.display()),

@@ -4,9 +4,12 @@
 //! alone and are made in one go. What crosses units goes through [`facts`], which hold no position and are compared for
 //! equality, so that an edit which changes no fact stops there.
 
+mod memory;
+
 use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -18,8 +21,8 @@ use smol_str::SmolStr;
 
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
-use crate::analysis::fields;
-use crate::analysis::program::ProgramIndex;
+use crate::analysis::fields::{Declaration, Declarations};
+use crate::analysis::program::{ProgramIndex, Skeleton};
 use crate::analysis::repeats::Outline;
 use crate::analysis::symbols::{self, SymbolTable};
 use crate::draw::{self, Drawing, Mark};
@@ -40,6 +43,7 @@ use crate::source::split::{self, SplitHint, UnitSpan};
 use crate::source::stx;
 use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
 use crate::target::Target;
+use memory::Memory;
 
 /// A file as it was read.
 #[salsa::input(debug)]
@@ -75,6 +79,9 @@ pub struct Project {
 pub trait Db: salsa::Database {
     /// Set once, never swapped: salsa does not track this handle.
     fn project(&self) -> Project;
+
+    /// What saves time, and changes no answer: salsa does not track it.
+    fn memory(&self) -> &Memory;
 }
 
 /// A block, section, subroutine or listing. Its identity is its file and key; its text may change.
@@ -210,7 +217,7 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
         Check::Unit(check) if rule.is_for_unit(language, unit.entity(db)) => {
             crate::lint::run(rule, findings, |sink| check(&cx, sink));
         }
-        Check::Unit(_) | Check::Program(_) | Check::File(_) => {}
+        _ => {}
     });
     let not_understood = if unit.unsupported(db).is_some() { text.len() } else { not_understood(language, &tree) };
     UnitAnalysis { facts: Arc::new(facts), findings, anchors: model.anchors.into_boxed_slice(), not_understood }
@@ -472,33 +479,93 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let settings = project.settings(db);
     let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
     let target = settings.target_or(program.family(db), named);
-    let family = program.family(db);
     let facts = program_facts(db, program);
-    let index = index(db, program, &facts);
-    let cx = ProgramCx::new(&index, settings, &target);
-    run_rules(settings, |rule, findings| match rule.check {
-        Check::Program(check) if rule.is_for_family(family) => {
-            crate::lint::run(rule, findings, |sink| check(&cx, sink));
+    let skeleton = Rc::new(skeleton(db, program, &facts));
+    let whole = ProgramIndex::of(skeleton.clone());
+    let cx = ProgramCx::new(&whole, settings, &target);
+    let mut ran = run_program_rules(&cx, |it| matches!(it, Check::Program(_)));
+    let step = db.memory().step((program.key(db).clone(), program.family(db)), target, &facts, &skeleton);
+    let part = step.part(&skeleton);
+    let part = part.as_ref().map(|it| ProgramCx::new(it, settings, &target));
+    let of_objects = run_program_rules(part.as_ref().unwrap_or(&cx), |it| matches!(it, Check::Object(_)));
+    let of_objects = db.memory().keep(step, of_objects, || whole.summary().clone());
+    ran.findings.extend(of_objects.findings);
+    ran.failed.extend(of_objects.failed);
+    ran
+}
+
+fn run_program_rules(cx: &ProgramCx<'_>, are_wanted: impl Fn(&Check) -> bool) -> Ran<Site> {
+    run_rules(cx.settings, |rule, findings| match rule.check {
+        Check::Program(check) | Check::Object(check)
+            if are_wanted(&rule.check) && rule.is_for_family(cx.program.family) =>
+        {
+            crate::lint::run(rule, findings, |sink| check(cx, sink));
         }
-        Check::Program(_) | Check::Unit(_) | Check::File(_) => {}
+        _ => {}
     })
 }
 
+/// The facts of a unit of a program, symbols resolved.
+#[salsa::tracked]
+fn named_facts<'db>(db: &'db dyn Db, program: Program<'db>, unit: Unit<'db>) -> Arc<UnitFacts> {
+    let facts = facts(db, unit);
+    match symbols::resolve(symbol_table(db, program), facts) {
+        Cow::Borrowed(_) => facts.clone(),
+        Cow::Owned(resolved) => Arc::new(resolved),
+    }
+}
+
+/// Firewall: of the facts of a unit, what the fields of other units hang on.
+#[salsa::tracked]
+fn declaration<'db>(db: &'db dyn Db, program: Program<'db>, unit: Unit<'db>) -> Declaration {
+    Declaration::new(named_facts(db, program, unit))
+}
+
+#[salsa::tracked]
+fn declarations<'db>(db: &'db dyn Db, program: Program<'db>) -> Declarations {
+    Declarations::new(program_units(db, program).iter().map(|&unit| declaration(db, program, unit)))
+}
+
+/// The facts of a unit of STEP 7, symbols and fields resolved.
+#[salsa::tracked]
+fn placed_facts<'db>(db: &'db dyn Db, program: Program<'db>, unit: Unit<'db>) -> Arc<UnitFacts> {
+    let facts = named_facts(db, program, unit);
+    match declarations(db, program).resolve(Cow::Borrowed(facts)) {
+        Cow::Borrowed(_) => facts.clone(),
+        Cow::Owned(resolved) => Arc::new(resolved),
+    }
+}
+
 /// The facts of a program's units, symbols resolved.
-pub fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Cow<'db, UnitFacts>> {
-    let facts: Vec<&UnitFacts> = program_units(db, program).iter().map(|&unit| &**facts(db, unit)).collect();
-    let facts = symbols::resolve(symbol_table(db, program), &facts);
-    if program.family(db) == Family::Step7 { fields::resolve(facts) } else { facts }
+pub fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Arc<UnitFacts>> {
+    let (is_step7, has_symbols) = (program.family(db) == Family::Step7, !symbol_table(db, program).is_empty());
+    let of_unit = |unit| match (is_step7, has_symbols) {
+        (true, _) => placed_facts(db, program, unit),
+        (false, true) => named_facts(db, program, unit),
+        (false, false) => facts(db, unit),
+    };
+    program_units(db, program).iter().map(|&unit| of_unit(unit).clone()).collect()
+}
+
+/// The skeleton of a program, of its [`program_facts`].
+fn skeleton<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Arc<UnitFacts>]) -> Skeleton<'a> {
+    let mut skeleton = Skeleton::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
+    let partly_read = db.project().partly_read(db);
+    if program.files(db).iter().any(|it| partly_read.iter().any(|folder| folder == folder_of(it.path(db)))) {
+        skeleton.leave_incomplete();
+    }
+    skeleton
 }
 
 /// The index of a program, of its [`program_facts`].
-pub fn index<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Cow<'_, UnitFacts>]) -> ProgramIndex<'a> {
-    let mut index = ProgramIndex::new(program.family(db), facts.iter().map(AsRef::as_ref).collect());
-    let partly_read = db.project().partly_read(db);
-    if program.files(db).iter().any(|it| partly_read.iter().any(|folder| folder == folder_of(it.path(db)))) {
-        index.leave_incomplete();
-    }
-    index
+pub fn index<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Arc<UnitFacts>]) -> ProgramIndex<'a> {
+    ProgramIndex::of(Rc::new(skeleton(db, program, facts)))
+}
+
+/// Findings of a program whose primary place is in a file, or in the configuration.
+#[salsa::tracked(returns(deref))]
+fn program_findings_in<'db>(db: &'db dyn Db, program: Program<'db>, file: SourceFile) -> Vec<Finding<Site>> {
+    program_findings_by_file(db, program).get(&file).cloned().unwrap_or_default()
 }
 
 /// Findings of a program by the file of their primary place.
@@ -578,7 +645,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     }
     for &program in programs_of(db, file) {
         let mut places = Places::new(db, program);
-        for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
+        for finding in program_findings_in(db, program, file) {
             found.extend(finding.clone().map(|site| places.of(site)));
         }
         let table = symbol_table(db, program);
@@ -614,7 +681,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     let cx = FileCx { text: file.text(db), leftovers: &leftovers };
     let ran = run_rules(settings, |rule, findings| match rule.check {
         Check::File(check) => crate::lint::run(rule, findings, |sink| check(&cx, sink)),
-        Check::Unit(_) | Check::Program(_) => {}
+        _ => {}
     });
     for finding in ran.findings {
         let Some(mut finding) = finding.map(|range| Some(FilePlace { file, range })) else { continue };
@@ -640,7 +707,7 @@ pub fn configuration_findings(db: &dyn Db) -> Vec<FileFinding> {
     let mut findings: Vec<FileFinding> = Vec::new();
     for &program in programs(db) {
         let mut places = Places::new(db, program);
-        for finding in program_findings_by_file(db, program).get(&file).into_iter().flatten() {
+        for finding in program_findings_in(db, program, file) {
             let Some(severity) = selection.severity(finding.rule, finding.severity) else { continue };
             let Some(mut finding) = finding.clone().map(|site| places.of(site)) else { continue };
             finding.severity = severity;
@@ -771,6 +838,7 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
 #[derive(Clone)]
 pub struct RootDatabase {
     project: Option<Project>,
+    memory: Arc<Memory>,
     storage: salsa::Storage<Self>,
 }
 
@@ -786,7 +854,7 @@ impl RootDatabase {
                 }
             })
         });
-        let mut db = Self { project: None, storage: salsa::Storage::new(log) };
+        let mut db = Self { project: None, memory: Arc::default(), storage: salsa::Storage::new(log) };
         let source = settings.source();
         let configuration = SourceFile::new(&db, source.path.clone(), source.text.clone(), Detected::NotPlc, None);
         db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings, configuration));
@@ -797,6 +865,7 @@ impl RootDatabase {
     pub fn set_files(&mut self, inputs: impl IntoIterator<Item = Input>) -> Vec<SourceFile> {
         let files: Vec<SourceFile> =
             inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text, it.detected, None)).collect();
+        self.memory.forget();
         self.project().set_files(self).to(files.clone());
         files
     }
@@ -810,6 +879,7 @@ impl RootDatabase {
     pub fn set_project(&mut self, mut files: Vec<SourceFile>) {
         files.sort_by(|a, b| a.path(self).cmp(b.path(self)));
         if *files != *self.project().files(self) {
+            self.memory.forget();
             self.project().set_files(self).to(files);
         }
     }
@@ -817,6 +887,7 @@ impl RootDatabase {
     pub fn set_settings(&mut self, settings: Settings) {
         let old = self.project().settings(self);
         if settings != *old || settings.source().text != old.source().text {
+            self.memory.forget();
             let configuration = self.project().configuration(self);
             let source = settings.source();
             if *source.path != *configuration.path(self) {
@@ -837,6 +908,7 @@ impl RootDatabase {
         folders.sort_unstable();
         folders.dedup();
         if folders != *self.project().partly_read(self) {
+            self.memory.forget();
             self.project().set_partly_read(self).to(folders);
         }
     }
@@ -873,6 +945,10 @@ impl Db for RootDatabase {
             Some(project) => project,
             None => unreachable!("`new` sets the project before it returns"),
         }
+    }
+
+    fn memory(&self) -> &Memory {
+        &self.memory
     }
 }
 

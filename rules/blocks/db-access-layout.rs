@@ -19,7 +19,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
     }
     // A function block's own instance, whichever that is.
-    for (unit, facts) in (0..).zip(&program.units) {
+    for (unit, facts) in program.judged_units() {
         let own = facts.entity.name().filter(|_| facts.entity.block_kind() == Some(BlockKind::Fb));
         let Some(own) = own.filter(|_| !facts.opens_instance) else { continue };
         for (at, fact) in (0..).zip(&facts.objects) {

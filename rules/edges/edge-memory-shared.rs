@@ -23,7 +23,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
     }
     // Memory of a block's own: nobody else has a name for it.
-    for (unit, facts) in (0..).zip(&cx.program.units) {
+    for (unit, facts) in cx.program.judged_units() {
         let edges = facts.uses.iter().filter(|it| it.mode == Mode::EdgeMemory);
         for object in edges.map(|it| it.object).collect::<BTreeSet<_>>() {
             let Some(fact) = facts.objects.get(object as usize) else { continue };

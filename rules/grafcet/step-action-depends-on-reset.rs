@@ -13,6 +13,9 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
+    if program.charts().is_empty() {
+        return;
+    }
     let is_preliminary =
         |it: &&GlobalUse<'_>| matches!(program.entity(it.unit), Entity::Pl7 { part: Part::Preliminary, .. });
     for uses in program.objects.iter().filter(|it| it.object.class == Class::Step && it.object.is_fixed()) {

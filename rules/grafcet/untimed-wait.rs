@@ -13,12 +13,12 @@ use crate::model::object::Class;
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
+    if cx.program.charts().is_empty() {
+        return;
+    }
     let times = || cx.program.objects.iter().filter(|it| it.object.class == Class::StepTime && it.is_read());
     // Which step an index means is known when the program runs.
     if times().any(|it| !it.object.is_fixed() || it.object.ty.is_table()) {
-        return;
-    }
-    if cx.program.charts().is_empty() {
         return;
     }
     let flow = Flow::new(cx.program);

@@ -11,7 +11,7 @@ use crate::model::unit::Callee;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    if !program.complete {
+    if !program.complete || !program.units.iter().any(|it| it.symbols.iter().any(|it| it.object.is_some())) {
         return;
     }
     let used = Used::new(cx);

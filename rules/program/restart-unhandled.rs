@@ -24,12 +24,15 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         Family::Pl72 => (asks_pl7_2, "`SY00` tells a cold start, `SY01` a warm one; `SY09` resets the outputs"),
         Family::Step5 | Family::Step7 => return,
     };
-    if is_project || !program.complete || program.objects.iter().any(asks) {
+    if is_project || !program.complete || program.objects_that(|it| it.class == Class::System).iter().any(asks) {
         return;
     }
-    let outputs = program.objects.iter().filter(|it| it.object.class == Class::Output);
-    let mut writes: Vec<Site> =
-        outputs.filter_map(|it| it.with_mode(crate::model::unit::Mode::writes).next()).map(|it| it.site()).collect();
+    let outputs = program.objects_that(|it| it.class == Class::Output);
+    let mut writes: Vec<Site> = outputs
+        .iter()
+        .filter_map(|it| it.with_mode(crate::model::unit::Mode::writes).next())
+        .map(|it| it.site())
+        .collect();
     writes.sort_by_key(|it| (program.order[it.unit as usize], it.anchor));
     let main = (0..).take(program.units.len()).min_by_key(|&it| program.order[it as usize]);
     if let (Some(main), Some(&output)) = (main, writes.first()) {

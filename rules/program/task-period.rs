@@ -64,7 +64,7 @@ fn first_unit(program: &ProgramIndex<'_>, context: Context) -> Option<Site> {
 
 /// A constant that the program gives as a period. What 0 does, the manual does not say.
 fn written(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for uses in cx.program.objects.iter().filter(|it| it.object.footprint.area == Area::SystemWords) {
+    for uses in &cx.program.objects_that(|it| it.footprint.area == Area::SystemWords) {
         let word = uses.object.footprint.start / 16;
         let Some((_, name, range)) = PERIODS.iter().find(|it| it.0 == word) else { continue };
         if uses.object.ty != Type::Word || uses.object.indexed {

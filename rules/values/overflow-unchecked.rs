@@ -1,9 +1,10 @@
 //! V004: arithmetic of which no code asks whether it overflowed.
 
 use crate::analysis::Site;
+use crate::analysis::program::ObjectUses;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Family;
-use crate::model::object::Area;
+use crate::model::object::{Area, Object};
 
 /// `%S18` says that an operation overflowed, or divided by zero; so do `SY18` and, without signs, `SY17` (PL72:1031-1034).
 const OVERFLOW: u32 = 18;
@@ -21,11 +22,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if !program.complete {
         return;
     }
-    let is_asked = program.objects.iter().any(|it| {
-        let place = &it.object.footprint;
-        let covers = it.object.indexed || (place.start <= OVERFLOW && first_bit < place.end());
-        place.area == Area::SystemBits && covers && it.is_read()
-    });
+    let tells = |it: &Object| {
+        let covers = it.indexed || (it.footprint.start <= OVERFLOW && first_bit < it.footprint.end());
+        it.footprint.area == Area::SystemBits && covers
+    };
+    let is_asked = program.objects_that(tells).iter().any(ObjectUses::is_read);
     let mut computing: Vec<Site> =
         (0..).zip(&program.units).filter_map(|(unit, facts)| Some(Site { unit, anchor: facts.computes? })).collect();
     computing.sort_by_key(|it| (program.order[it.unit as usize], it.anchor));

@@ -76,16 +76,12 @@ pub struct Hidden {
 
 impl Hidden {
     pub fn new(program: &ProgramIndex<'_>) -> Self {
-        let by_address = |it: &ObjectUses<'_>| matches!(it.object.class, Class::Output | Class::Memory | Class::Data);
         let gives = |missing: Mode| {
             move |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset))
         };
-        let addressed = |missing: Mode| {
-            program.objects.iter().filter(|it| by_address(it)).any(|it| it.with_mode(gives(missing)).next().is_some())
-        };
         Self {
             by_symbol: [Mode::Set, Mode::Reset].map(|it| program.has_unresolved(gives(it))),
-            by_address: [Mode::Set, Mode::Reset].map(addressed),
+            by_address: [Mode::Set, Mode::Reset].map(|it| program.has_addressed(gives(it))),
         }
     }
 

@@ -128,10 +128,10 @@ pub struct UnitFacts {
     pub calls: Vec<FactCall>,
     /// What stands in the brackets of indexed objects; an object is one of `objects`.
     pub indexes: Vec<Index>,
-    /// Pairs of calls, by index, that never run in the same scan.
+    /// Pairs of calls, by index, the smaller first, that never run in the same scan. Sorted.
     pub exclusive_calls: Vec<(u32, u32)>,
     /// Pairs of uses, by anchor, the smaller first, that never take effect in the same scan: of a set, reset or edge
-    /// memory with another write of its object. [`Use::group`] says it of the other writes.
+    /// memory with another write of its object. Sorted. [`Use::group`] says it of the other writes.
     pub exclusive_uses: Vec<(u32, u32)>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
@@ -308,6 +308,35 @@ impl UnitFacts {
             lost: liveness::lost(model),
             outline: None,
         }
+    }
+
+    /// Whether all is as in other facts of the unit but what its code does to which objects, and where things stand.
+    pub fn has_outline_of(&self, other: &Self) -> bool {
+        let is_same_call = |(a, b): (&FactCall, &FactCall)| {
+            let key = |it: &FactCall| (it.conditional, it.reachable, it.full, it.instance_anchor.is_some());
+            (&a.callee, &a.instance, key(a)) == (&b.callee, &b.instance, key(b))
+        };
+        let is_same_symbol =
+            |(a, b): (&FactSymbol, &FactSymbol)| (&a.name, &a.object, &a.ty) == (&b.name, &b.object, &b.ty);
+        let condition = |it: &Self| Some(it.objects.get(it.condition? as usize)?.object.clone());
+        let flags = |it: &Self| (it.opens_instance, it.reads_indirectly, it.writes_indirectly, it.has_gaps);
+        (&self.entity, self.language) == (&other.entity, other.language)
+            && self.calls.len() == other.calls.len()
+            && self.calls.iter().zip(&other.calls).all(is_same_call)
+            && self.exclusive_calls == other.exclusive_calls
+            && self.instance_of == other.instance_of
+            && self.declared == other.declared
+            && self.symbols.len() == other.symbols.len()
+            && self.symbols.iter().zip(&other.symbols).all(is_same_symbol)
+            && flags(self) == flags(other)
+            && self.chart == other.chart
+            && self.interface == other.interface
+            && condition(self) == condition(other)
+    }
+
+    /// Whether the places of its calls are those of other facts of the unit.
+    pub fn calls_from_where(&self, other: &Self) -> bool {
+        self.calls.iter().map(|it| it.anchor).eq(other.calls.iter().map(|it| it.anchor))
     }
 
     /// Says under which condition the section runs. The bit is read before the unit runs.
@@ -588,6 +617,7 @@ fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
             same.push(at);
         }
     }
+    pairs.sort_unstable();
     pairs
 }
 

@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::facts::{FactObject, UnitFacts};
 use super::symbols::join_aliases;
 use crate::model::entity::{BlockKind, BlockName};
-use crate::model::layout::{Elementary, Layouts, Place};
+use crate::model::layout::{DataType, Elementary, Layouts, Place};
 use crate::model::object::{Area, Class, Footprint, Object, Rights, Type, step7};
 use crate::model::unit::{Mode, Section};
 
@@ -21,33 +21,68 @@ pub fn layouts<'a>(units: impl IntoIterator<Item = &'a UnitFacts>) -> Layouts {
     Layouts::new(blocks)
 }
 
-/// The facts of the units of a program with the places of the fields that they name.
-pub fn resolve(units: Vec<Cow<'_, UnitFacts>>) -> Vec<Cow<'_, UnitFacts>> {
-    let layouts = layouts(units.iter().map(AsRef::as_ref));
-    let instances = Instances::new(units.iter().map(AsRef::as_ref));
-    units.into_iter().map(|it| resolve_unit(&layouts, &instances, it)).collect()
+/// What a unit declares, and into which data blocks it looks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Declaration {
+    name: Option<BlockName>,
+    declared: Option<Box<DataType>>,
+    instance_of: Option<BlockName>,
+    /// Sorted, each once.
+    looks_into: Vec<BlockName>,
+}
+
+impl Declaration {
+    /// `facts`: symbols resolved.
+    pub fn new(facts: &UnitFacts) -> Self {
+        let objects = facts.objects.iter().filter_map(|it| match &it.object.footprint.area {
+            Area::Data(name) => Some(name.clone()),
+            _ => step7::field(&it.object).map(|it| it.0),
+        });
+        let mut looks_into: Vec<BlockName> = objects.collect();
+        looks_into.sort_unstable();
+        looks_into.dedup();
+        let (name, declared) = (facts.entity.name().cloned(), facts.declared.clone());
+        Self { name, declared, instance_of: facts.instance_of.clone(), looks_into }
+    }
+}
+
+/// The declarations of all units of a program.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Declarations {
+    layouts: Layouts,
+    instances: Instances,
+}
+
+impl Declarations {
+    pub fn new<'a>(units: impl Iterator<Item = &'a Declaration> + Clone) -> Self {
+        let blocks = units.clone().filter_map(|it| Some((it.name.as_ref()?, it.declared.as_deref()?)));
+        Self { layouts: Layouts::new(blocks), instances: Instances::new(units) }
+    }
+
+    /// The facts of a unit, symbols resolved, with the places of the fields that they name.
+    pub fn resolve<'a>(&self, facts: Cow<'a, UnitFacts>) -> Cow<'a, UnitFacts> {
+        resolve_unit(&self.layouts, &self.instances, facts)
+    }
 }
 
 /// Of each function block, the data block that is its only instance, if other blocks look into that.
+#[derive(Debug, PartialEq, Eq)]
 struct Instances(FxHashMap<BlockName, BlockName>);
 
 impl Instances {
-    fn new<'a>(units: impl Iterator<Item = &'a UnitFacts> + Clone) -> Self {
+    fn new<'a>(units: impl Iterator<Item = &'a Declaration>) -> Self {
         let mut only: FxHashMap<&BlockName, Vec<&BlockName>> = FxHashMap::default();
         let mut nested: FxHashSet<&BlockName> = FxHashSet::default();
-        let mut seen: FxHashSet<BlockName> = FxHashSet::default();
-        for facts in units {
-            if let (Some(of), Some(name)) = (&facts.instance_of, facts.entity.name()) {
+        let mut seen: FxHashSet<&BlockName> = FxHashSet::default();
+        for it in units {
+            if let (Some(of), Some(name)) = (&it.instance_of, &it.name) {
                 only.entry(of).or_default().push(name);
-            } else if let Some(declared) = &facts.declared {
+            } else if let Some(declared) = &it.declared {
                 declared.each_named(&mut |it| {
                     nested.insert(it);
                 });
             }
-            seen.extend(facts.objects.iter().filter_map(|it| match &it.object.footprint.area {
-                Area::Data(name) => Some(name.clone()),
-                _ => step7::field(&it.object).map(|it| it.0),
-            }));
+            seen.extend(&it.looks_into);
         }
         let only = only.into_iter().filter_map(|(of, names)| match names[..] {
             [name] if seen.contains(name) && !nested.contains(of) => Some((of.clone(), name.clone())),
@@ -144,7 +179,10 @@ mod tests {
     fn data(text: &str, table: &str) -> Vec<String> {
         let units = program(text, table);
         let table = SymbolTable::new(Family::Step7, &units);
-        let units = resolve(symbols::resolve(&table, &units.iter().collect::<Vec<_>>()));
+        let units: Vec<_> = units.iter().map(|it| symbols::resolve(&table, it)).collect();
+        let declared: Vec<Declaration> = units.iter().map(|it| Declaration::new(it)).collect();
+        let declarations = Declarations::new(declared.iter());
+        let units: Vec<_> = units.into_iter().map(|it| declarations.resolve(it)).collect();
         let index = ProgramIndex::new(Family::Step7, units.iter().map(AsRef::as_ref).collect());
         let objects = index.objects.iter().filter(|it| it.object.class == Class::Data);
         objects
@@ -195,7 +233,7 @@ mod tests {
         let table = "\"Motor\",\"FB 1\",\"FB 1\",\"\"\n\"Motor_1\",\"DB 7\",\"FB 1\",\"\"\n\"count.\",\"C 2\",\"COUNTER\",\"\"\n";
         let units = program(code, table);
         let table = SymbolTable::new(Family::Step7, &units);
-        let units = symbols::resolve(&table, &units.iter().collect::<Vec<_>>());
+        let units: Vec<_> = units.iter().map(|it| symbols::resolve(&table, it)).collect();
         let index = ProgramIndex::new(Family::Step7, units.iter().map(AsRef::as_ref).collect());
         assert_eq!(index.calls[0].target, Some(0), "the block is called by its number, and defined by its symbol");
         assert_eq!(index.calls[0].it.instance, Some(BlockName::Number(BlockKind::Db, 7)));

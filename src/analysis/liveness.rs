@@ -48,13 +48,8 @@ pub fn lost(model: &UnitModel) -> Vec<Lost> {
     if model.has_gaps || model.language == Language::Pl7Xref {
         return Vec::new();
     }
-    let mut walk = Walk {
-        model,
-        space: Space::of(model),
-        waiting: Vec::new(),
-        areas: FxHashMap::default(),
-        found: Vec::new(),
-    };
+    let mut walk =
+        Walk { model, space: Space::of(model), waiting: Vec::new(), areas: FxHashMap::default(), found: Vec::new() };
     let mut part = None;
     let mut accesses = model.accesses.iter().peekable();
     for (at, statement) in (0..).zip(&model.statements) {
@@ -136,14 +131,17 @@ impl<'a> Walk<'a> {
         }
         self.write(object, access, statement, value, when);
         if let Some(value) = value.filter(|_| self.can_be_lost(object)) {
-            self.wait(object, Waiting {
-                access,
-                value,
-                in_loop: statement.in_loop,
-                overridden: Vec::new(),
-                by: Vec::new(),
-                open: true,
-            });
+            self.wait(
+                object,
+                Waiting {
+                    access,
+                    value,
+                    in_loop: statement.in_loop,
+                    overridden: Vec::new(),
+                    by: Vec::new(),
+                    open: true,
+                },
+            );
         }
     }
 
@@ -207,9 +205,16 @@ impl<'a> Walk<'a> {
             if !surely {
                 return;
             }
-            // What takes the same value again has lost nothing, and a constant before the branches is a default.
-            let is_constant = matches!(walk.model.exprs.get(waiting.value), Expr::Bool(_) | Expr::Int(_) | Expr::Float(_));
-            if value != Some(waiting.value) && (straight_on || !is_constant) {
+            // What takes the same value again has lost nothing; a constant before the branches is a default, and what is cleared
+            // first is cleared to be sure.
+            let (is_constant, is_clear) = match *walk.model.exprs.get(waiting.value) {
+                Expr::Bool(it) => (true, !it),
+                Expr::Int(it) => (true, it == 0),
+                Expr::Float(it) => (true, f64::from_bits(it) == 0.0),
+                Expr::Text(_) => (true, false),
+                _ => (false, false),
+            };
+            if value != Some(waiting.value) && !is_clear && (straight_on || !is_constant) {
                 let local = is_local(written);
                 let by = waiting.by.clone().into_boxed_slice();
                 walk.found.push(Lost { write: waiting.access.anchor, by, local });
@@ -294,10 +299,7 @@ pub struct LostWrites<'a> {
 
 /// What the units of a program lose, without what other code may see between the write and the one that overrides it, and
 /// without the bits of which [`drives`](super::drives) tells that they are driven in several places.
-pub fn of_program<'a, 'n>(
-    program: &'a ProgramIndex<'a>,
-    neighbours: impl Fn(u32) -> &'n [u32],
-) -> Vec<LostWrites<'a>> {
+pub fn of_program<'a, 'n>(program: &'a ProgramIndex<'a>, neighbours: impl Fn(u32) -> &'n [u32]) -> Vec<LostWrites<'a>> {
     let mut shared: FxHashMap<Site, &Lost> = FxHashMap::default();
     let mut found = Vec::new();
     for (unit, facts) in (0..).zip(&program.units) {
@@ -349,7 +351,9 @@ fn is_driven_by_others(program: &ProgramIndex<'_>, uses: &ObjectUses<'_>, neighb
         }
         Class::Output => neighbour_is_written(),
         // What nothing reads at all is another matter.
-        _ => program.complete && !uses.is_read() && !neighbours.iter().any(|&it| program.objects[it as usize].is_read()),
+        _ => {
+            program.complete && !uses.is_read() && !neighbours.iter().any(|&it| program.objects[it as usize].is_read())
+        }
     }
 }
 

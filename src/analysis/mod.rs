@@ -19,6 +19,7 @@ pub mod features;
 pub mod fields;
 pub mod flow;
 pub mod gaps;
+pub mod islands;
 pub mod known;
 pub mod liveness;
 pub mod modules;

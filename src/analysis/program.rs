@@ -1,6 +1,8 @@
 //! A program as a whole: the access table over all units, the call graph, and what scans what.
 
 use std::cell::OnceCell;
+use std::ops::Deref;
+use std::rc::Rc;
 
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -82,8 +84,8 @@ impl GlobalUse<'_> {
 }
 
 /// Which modes some uses have; those of all pins count as one.
-#[derive(Debug, Clone, Copy, Default)]
-struct Modes(u16);
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Modes(u16);
 
 impl Modes {
     /// By the number of their bit.
@@ -121,20 +123,36 @@ impl Modes {
         }
     }
 
-    fn insert(&mut self, mode: Mode) {
+    pub(super) fn insert(&mut self, mode: Mode) {
         self.0 |= Self::bit(mode);
+    }
+
+    pub(super) fn join(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+
+    fn iter(self) -> impl Iterator<Item = Mode> {
+        let mut rest = self.0;
+        std::iter::from_fn(move || {
+            let mode = *Self::ALL.get(rest.trailing_zeros() as usize)?;
+            rest &= rest - 1;
+            Some(mode)
+        })
+    }
+
+    /// Whether one of them drives a pin.
+    fn drive(self) -> bool {
+        self.0 & Self::bit(Mode::Drive(Pin::Whole)) != 0
     }
 
     /// Whether one of the modes may be wanted; which pin is driven is not known here.
     fn may_have(self, wanted: impl Fn(Mode) -> bool) -> bool {
-        let mut rest = self.0;
-        while let Some(&mode) = Self::ALL.get(rest.trailing_zeros() as usize) {
-            if matches!(mode, Mode::Drive(_)) || wanted(mode) {
-                return true;
-            }
-            rest &= rest - 1;
-        }
-        false
+        self.iter().any(|it| matches!(it, Mode::Drive(_)) || wanted(it))
+    }
+
+    /// Whether one of the modes is wanted, those of pins left out.
+    fn has(self, wanted: impl Fn(Mode) -> bool) -> bool {
+        self.iter().any(|it| !matches!(it, Mode::Drive(_)) && wanted(it))
     }
 }
 
@@ -149,6 +167,16 @@ pub struct ObjectUses<'a> {
 }
 
 impl<'a> ObjectUses<'a> {
+    pub(super) fn new(object: &'a Object) -> Self {
+        Self { object, number: false, uses: Vec::new(), modes: Modes::default() }
+    }
+
+    pub(super) fn push(&mut self, skeleton: &Skeleton<'_>, unit: u32, it: &'a Use) {
+        let mode = actual_mode(skeleton, unit, it);
+        self.uses.push(GlobalUse { unit, mode, it });
+        self.modes.insert(mode);
+    }
+
     /// Most rules want modes that most objects have not: this costs next to nothing then.
     pub fn with_mode(&self, wanted: impl Fn(Mode) -> bool) -> impl Iterator<Item = &GlobalUse<'a>> {
         let uses = if self.modes.may_have(&wanted) { self.uses.as_slice() } else { &[] };
@@ -178,36 +206,73 @@ impl<'a> ObjectUses<'a> {
 }
 
 /// Places computed at run time.
-#[derive(Debug)]
-struct Indirect<'a> {
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Indirect {
     /// By a pointer, or an index on a symbol that nothing resolves.
     anywhere: bool,
     /// By an index on an address, which does not lead out of its area: where it would, the controller takes 0 for it
     /// (PL7:1134-1143).
-    areas: FxHashSet<&'a Area>,
+    areas: FxHashSet<Area>,
 }
 
-impl<'a> Indirect<'a> {
-    fn new(
-        units: &[&UnitFacts],
-        objects: &[ObjectUses<'a>],
-        by_unit: impl Fn(&UnitFacts) -> bool,
-        by_object: impl Fn(&ObjectUses<'a>) -> bool,
-    ) -> Self {
-        let mut found = Self { anywhere: units.iter().any(|it| by_unit(it)), areas: FxHashSet::default() };
-        for it in objects.iter().filter(|it| !it.object.is_fixed() && by_object(it)) {
-            let area = &it.object.footprint.area;
-            found.anywhere |= matches!(area, Area::Indirect | Area::Symbol(_));
-            if it.object.indexed {
-                found.areas.insert(area);
-            }
+impl Indirect {
+    fn insert(&mut self, object: &Object) {
+        let area = &object.footprint.area;
+        self.anywhere |= matches!(area, Area::Indirect | Area::Symbol(_));
+        if object.indexed && !self.areas.contains(area) {
+            self.areas.insert(area.clone());
         }
-        found
     }
 
     fn may_be_in(&self, area: &Area) -> bool {
         // What is meant by a symbol that nothing resolves may lie anywhere.
         self.anywhere || self.areas.contains(area) || matches!(area, Area::Symbol(_)) && !self.areas.is_empty()
+    }
+}
+
+/// What can be said of all objects together, which those that judge a single one want to know.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Summary {
+    written: Indirect,
+    read: Indirect,
+    /// Of the uses by a symbol that nothing resolves and that drives no block.
+    unresolved: Modes,
+    /// Of the uses of outputs, memory and data by address.
+    addressed: Modes,
+}
+
+impl Summary {
+    /// `objects`: at least those that are [`Self::is_odd`], with the modes of their uses. `addressed`: of the uses of those
+    /// that are [`Self::is_addressed`].
+    pub(super) fn new<'o>(
+        skeleton: &Skeleton<'_>,
+        objects: impl Iterator<Item = (&'o Object, Modes)>,
+        addressed: Modes,
+    ) -> Self {
+        let mut found = Self { addressed, ..Self::default() };
+        found.written.anywhere = skeleton.units.iter().any(|it| it.writes_indirectly);
+        found.read.anywhere = skeleton.units.iter().any(|it| it.reads_indirectly);
+        for (object, modes) in objects.filter(|it| Self::is_odd(it.0)) {
+            if !object.is_fixed() && (modes.drive() || modes.has(Mode::writes)) {
+                found.written.insert(object);
+            }
+            if !object.is_fixed() && modes.has(Mode::reads) {
+                found.read.insert(object);
+            }
+            if matches!(object.footprint.area, Area::Symbol(_)) && !modes.drive() && !skeleton.is_item(object) {
+                found.unresolved.join(modes);
+            }
+        }
+        found
+    }
+
+    /// Whether the place of an object is not known.
+    pub(super) fn is_odd(object: &Object) -> bool {
+        !object.is_fixed() || matches!(object.footprint.area, Area::Symbol(_))
+    }
+
+    pub(super) fn is_addressed(object: &Object) -> bool {
+        matches!(object.class, Class::Output | Class::Memory | Class::Data)
     }
 }
 
@@ -240,13 +305,15 @@ pub struct ConditionalSection<'a> {
     pub units: Vec<u32>,
 }
 
+/// The units of a program and what runs them: all but their objects.
 #[derive(Debug)]
-pub struct ProgramIndex<'a> {
+pub struct Skeleton<'a> {
     pub family: Family,
     pub units: Vec<&'a UnitFacts>,
-    /// Objects that several units can share, by footprint.
-    pub objects: Vec<ObjectUses<'a>>,
+    /// Those of a unit stand together.
     pub calls: Vec<GlobalCall<'a>>,
+    /// Of each unit, its first call.
+    first_calls: Vec<u32>,
     /// Calls into each unit, as indices into `calls`.
     pub callers: Vec<Vec<u32>>,
     /// Contexts that run each unit, sorted.
@@ -262,25 +329,194 @@ pub struct ProgramIndex<'a> {
     pub complete: bool,
     /// Some of the program was not read or not understood.
     pub partial: bool,
-    written: Indirect<'a>,
-    read: Indirect<'a>,
-    exclusive: FxHashSet<(u32, u32, u32)>,
-    exclusive_uses: FxHashSet<(u32, u32, u32)>,
     names: FxHashMap<UnitName, u32>,
     charts: OnceCell<Vec<Chart<'a>>>,
     actions: OnceCell<Actions<'a>>,
+    layouts: OnceCell<Layouts>,
+}
+
+/// Objects that several units can share, by footprint. They are collected when they are first asked for.
+pub struct Objects<'a> {
+    of: Rc<Skeleton<'a>>,
+    all: OnceCell<Vec<ObjectUses<'a>>>,
+}
+
+impl<'a> Deref for Objects<'a> {
+    type Target = [ObjectUses<'a>];
+
+    fn deref(&self) -> &Self::Target {
+        self.all.get_or_init(|| collect(&self.of, |_| true))
+    }
+}
+
+impl<'o, 'a> IntoIterator for &'o Objects<'a> {
+    type Item = &'o ObjectUses<'a>;
+    type IntoIter = std::slice::Iter<'o, ObjectUses<'a>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl std::fmt::Debug for Objects<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self).finish()
+    }
+}
+
+/// A program: its skeleton, and the access table over all units or some islands of it.
+#[derive(Debug)]
+pub struct ProgramIndex<'a> {
+    skeleton: Rc<Skeleton<'a>>,
+    pub objects: Objects<'a>,
+    /// Of a part of a program, the units that have changed.
+    changed: Option<Box<[u32]>>,
+    summary: OnceCell<Summary>,
     sequences: OnceCell<Sequences<'a>>,
     sequence_charts: OnceCell<Vec<Chart<'a>>>,
-    layouts: OnceCell<Layouts>,
+}
+
+impl<'a> Deref for ProgramIndex<'a> {
+    type Target = Skeleton<'a>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.skeleton
+    }
 }
 
 impl<'a> ProgramIndex<'a> {
     /// `units`: in path and file order.
     pub fn new(family: Family, units: Vec<&'a UnitFacts>) -> Self {
+        Self::of(Rc::new(Skeleton::new(family, units)))
+    }
+
+    /// The whole of a program.
+    pub fn of(skeleton: Rc<Skeleton<'a>>) -> Self {
+        let objects = Objects { of: skeleton.clone(), all: OnceCell::new() };
+        let (sequences, sequence_charts) = (OnceCell::new(), OnceCell::new());
+        Self { skeleton, objects, changed: None, summary: OnceCell::new(), sequences, sequence_charts }
+    }
+
+    pub fn skeleton(&self) -> &Rc<Skeleton<'a>> {
+        &self.skeleton
+    }
+
+    /// Some of its objects, in order, with all that share memory with one of them. `summary`: of the whole program.
+    pub(super) fn part(
+        skeleton: Rc<Skeleton<'a>>,
+        objects: Vec<ObjectUses<'a>>,
+        changed: Box<[u32]>,
+        summary: Summary,
+    ) -> Self {
+        let mut part = Self::of(skeleton);
+        (part.objects.all, part.changed, part.summary) = (objects.into(), Some(changed), summary.into());
+        part
+    }
+
+    /// Those of its objects that are wanted, in their order. Of a few out of many, this spares the others.
+    pub fn objects_that(&self, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
+        collect(&self.skeleton, wanted)
+    }
+
+    /// The units whose own objects, which no other unit can name, are judged with the others.
+    pub fn judged_units(&self) -> impl Iterator<Item = (u32, &'a UnitFacts)> {
+        let all = (0..).zip(&self.units).map(|(at, it)| (at, *it));
+        all.filter(|(at, _)| self.changed.as_ref().is_none_or(|it| it.contains(at)))
+    }
+
+    /// Heading of a unit.
+    pub fn heading(unit: u32) -> Site {
+        Site { unit, anchor: 0 }
+    }
+
+    /// What is known of all objects of the program together, also where only some of them are there.
+    pub fn summary(&self) -> &Summary {
+        self.summary.get_or_init(|| {
+            let mut addressed = Modes::default();
+            let all = self.objects.iter().filter(|it| Summary::is_addressed(it.object));
+            all.for_each(|it| addressed.join(it.modes));
+            Summary::new(self, self.objects.iter().map(|it| (it.object, it.modes)), addressed)
+        })
+    }
+
+    /// The sequences that the program codes with bits.
+    pub fn sequences(&self) -> &Sequences<'a> {
+        self.sequences.get_or_init(|| Sequences::new(self))
+    }
+
+    /// The same as charts, in their order.
+    pub fn sequence_charts(&'a self) -> &'a [Chart<'a>] {
+        self.sequence_charts.get_or_init(|| self.sequences().charts())
+    }
+
+    /// The object of the program that an object of a unit is, by index; `None` for one that no other unit knows.
+    pub fn object_of(&self, it: &FactObject) -> Option<u32> {
+        let is_same = |other: &ObjectUses<'_>| {
+            let (one, other) = (&it.object, other.object);
+            (one.ty, one.indexed) == (other.ty, other.indexed) && one.footprint == other.footprint
+        };
+        self.objects.iter().position(is_same).map(as_index)
+    }
+
+    /// Whether an indexed object, which may be any of its area, is written in an area.
+    pub fn is_written_by_index(&self, area: &Area) -> bool {
+        self.summary().written.areas.contains(area)
+    }
+
+    /// Whether some unit writes a place computed at run time that may lie in the area: the absence of another write says
+    /// nothing then.
+    pub fn writes_indirectly(&self, area: &Area) -> bool {
+        self.summary().written.may_be_in(area)
+    }
+
+    /// Whether some unit reads a place computed at run time that may lie in the area.
+    pub fn reads_indirectly(&self, area: &Area) -> bool {
+        self.summary().read.may_be_in(area)
+    }
+
+    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address. The items of an
+    /// instance of a DFB have none.
+    pub fn has_unresolved(&self, wanted: impl Fn(Mode) -> bool) -> bool {
+        self.summary().unresolved.has(wanted)
+    }
+
+    /// Whether a use of that kind is one of an output, of memory or of data by its address.
+    pub fn has_addressed(&self, wanted: impl Fn(Mode) -> bool) -> bool {
+        self.summary().addressed.has(wanted)
+    }
+
+    /// Pairs of distinct objects that share memory, by index, the earlier address first.
+    pub fn overlaps(&self) -> Vec<(u32, u32)> {
+        /// One object is compared with at most this many that start inside it.
+        const WINDOW: usize = 256;
+        let mut pairs = Vec::new();
+        for (at, a) in self.objects.iter().enumerate() {
+            let from = &a.object.footprint;
+            if !a.object.is_fixed() || matches!(from.area, Area::Symbol(_)) {
+                continue;
+            }
+            for (distance, b) in self.objects[at + 1..].iter().enumerate().take(WINDOW) {
+                if !from.overlaps(&b.object.footprint) {
+                    break;
+                }
+                if b.object.is_fixed() {
+                    pairs.push((as_index(at), as_index(at + 1 + distance)));
+                }
+            }
+        }
+        pairs
+    }
+}
+
+impl<'a> Skeleton<'a> {
+    /// `units`: in path and file order.
+    pub fn new(family: Family, units: Vec<&'a UnitFacts>) -> Self {
         let names = unit_names(&units);
         let mut calls = Vec::new();
+        let mut first_calls = Vec::with_capacity(units.len());
         let mut callers = vec![Vec::new(); units.len()];
         for (unit, facts) in units.iter().enumerate() {
+            first_calls.push(as_index(calls.len()));
             for (index, it) in facts.calls.iter().enumerate() {
                 let target = target(facts, &it.callee).and_then(|key| names.get(&key).copied());
                 if let Some(target) = target.filter(|_| it.reachable) {
@@ -293,24 +529,13 @@ impl<'a> ProgramIndex<'a> {
         let sure = sure(&units, &calls);
         let order = order(family, &units, &calls);
         let complete = is_complete(family, &units, &calls);
-        let exclusive = units
-            .iter()
-            .enumerate()
-            .flat_map(|(unit, facts)| facts.exclusive_calls.iter().map(move |&(a, b)| (as_index(unit), a, b)))
-            .collect();
-        let exclusive_uses = (0..)
-            .zip(&units)
-            .flat_map(|(unit, facts)| facts.exclusive_uses.iter().map(move |&(a, b)| (unit, a, b)))
-            .collect();
-        let objects = collect(&units, &order, &calls);
-        let written = Indirect::new(&units, &objects, |it| it.writes_indirectly, ObjectUses::is_written);
-        let read = Indirect::new(&units, &objects, |it| it.reads_indirectly, ObjectUses::is_read);
         let partial = units.iter().any(|it| it.has_gaps);
+        let (charts, actions, layouts) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
         Self {
             family,
             units,
-            objects,
             calls,
+            first_calls,
             callers,
             contexts,
             reached,
@@ -318,32 +543,27 @@ impl<'a> ProgramIndex<'a> {
             order,
             complete,
             partial,
-            written,
-            read,
-            exclusive,
-            exclusive_uses,
             names,
-            charts: OnceCell::new(),
-            actions: OnceCell::new(),
-            sequences: OnceCell::new(),
-            sequence_charts: OnceCell::new(),
-            layouts: OnceCell::new(),
+            charts,
+            actions,
+            layouts,
         }
+    }
+
+    /// The unit that a call of a unit, by its index there, leads to.
+    fn target_of(&self, unit: u32, call: u32) -> Option<u32> {
+        self.calls.get((self.first_calls.get(unit as usize)? + call) as usize).filter(|it| it.unit == unit)?.target
+    }
+
+    /// Whether an object is an item of an instance of a DFB, which has no address.
+    fn is_item(&self, object: &Object) -> bool {
+        let instance = object.text.split_once('.').map(|it| UnitName::Instance(key(it.0)));
+        instance.is_some_and(|it| self.names.contains_key(&it))
     }
 
     /// The charts of the program, whose pages are joined.
     pub fn charts(&self) -> &[Chart<'a>] {
         self.charts.get_or_init(|| chart::join(&self.units))
-    }
-
-    /// The sequences that the program codes with bits.
-    pub fn sequences(&self) -> &Sequences<'a> {
-        self.sequences.get_or_init(|| Sequences::new(self))
-    }
-
-    /// The same as charts, in their order.
-    pub fn sequence_charts(&'a self) -> &'a [Chart<'a>] {
-        self.sequence_charts.get_or_init(|| self.sequences().charts())
     }
 
     /// The actions of their steps.
@@ -369,15 +589,6 @@ impl<'a> ProgramIndex<'a> {
         None
     }
 
-    /// The object of the program that an object of a unit is, by index; `None` for one that no other unit knows.
-    pub fn object_of(&self, it: &FactObject) -> Option<u32> {
-        let is_same = |other: &ObjectUses<'_>| {
-            let (one, other) = (&it.object, other.object);
-            (one.ty, one.indexed) == (other.ty, other.indexed) && one.footprint == other.footprint
-        };
-        self.objects.iter().position(is_same).map(as_index)
-    }
-
     /// Whether two writes of one object can both take effect in one scan.
     pub fn clash(&self, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
         if chart::in_exclusive_actions(self.units[a.unit as usize], a.it, self.units[b.unit as usize], b.it) {
@@ -386,8 +597,8 @@ impl<'a> ProgramIndex<'a> {
         if a.unit != b.unit {
             return self.same_scan(a.unit, b.unit);
         }
-        let pair = (a.unit, a.it.anchor.min(b.it.anchor), a.it.anchor.max(b.it.anchor));
-        a.it.group != b.it.group && !self.exclusive_uses.contains(&pair)
+        let pair = (a.it.anchor.min(b.it.anchor), a.it.anchor.max(b.it.anchor));
+        a.it.group != b.it.group && self.units[a.unit as usize].exclusive_uses.binary_search(&pair).is_err()
     }
 
     /// Whether two units can run in the same scan of the same context.
@@ -442,7 +653,7 @@ impl<'a> ProgramIndex<'a> {
         let mut at = unit;
         while seen.insert(at) {
             if let Some(condition) = self.condition(at) {
-                return Some((Self::heading(at), format!("this section runs while `{}` is 1", condition.text)));
+                return Some((ProgramIndex::heading(at), format!("this section runs while `{}` is 1", condition.text)));
             }
             let callers = self.callers[at as usize].iter().map(|&it| &self.calls[it as usize]);
             if let Some(call) = callers.clone().find(|it| it.it.conditional) {
@@ -503,25 +714,25 @@ impl<'a> ProgramIndex<'a> {
         self.units[it.unit as usize].objects.get(it.it.object as usize)?.missed
     }
 
-    /// Whether an indexed object, which may be any of its area, is written in an area.
-    pub fn is_written_by_index(&self, area: &Area) -> bool {
-        self.written.areas.contains(area)
-    }
-
     /// Whether two calls can both happen in the same scan of the same context.
     pub fn calls_in_same_scan(&self, a: &GlobalCall<'_>, b: &GlobalCall<'_>) -> bool {
         let (first, second) = (a.index.min(b.index), a.index.max(b.index));
         a.it.reachable
             && b.it.reachable
             && self.same_scan(a.unit, b.unit)
-            && (a.unit != b.unit || !self.exclusive.contains(&(a.unit, first, second)))
+            && (a.unit != b.unit || !self.are_exclusive(a.unit, first, second))
+    }
+
+    /// Whether two calls of a unit, by index, the smaller first, never run in the same scan.
+    fn are_exclusive(&self, unit: u32, first: u32, second: u32) -> bool {
+        self.units[unit as usize].exclusive_calls.binary_search(&(first, second)).is_ok()
     }
 
     /// Whether two units are called under conditions that exclude each other, as far as their only calls tell.
     fn exclusive_units(&self, a: u32, b: u32) -> bool {
         let (up_a, up_b) = (self.only_calls(a), self.only_calls(b));
         up_a.iter().any(|&(unit, x)| {
-            up_b.iter().any(|&(other, y)| unit == other && self.exclusive.contains(&(unit, x.min(y), x.max(y))))
+            up_b.iter().any(|&(other, y)| unit == other && self.are_exclusive(unit, x.min(y), x.max(y)))
         })
     }
 
@@ -571,41 +782,10 @@ impl<'a> ProgramIndex<'a> {
         !contexts.is_empty() && contexts.iter().all(|it| matches!(it, Context::Event(_)))
     }
 
-    /// Whether some unit writes a place computed at run time that may lie in the area: the absence of another write says
-    /// nothing then.
-    pub fn writes_indirectly(&self, area: &Area) -> bool {
-        self.written.may_be_in(area)
-    }
-
-    /// Whether some unit reads a place computed at run time that may lie in the area.
-    pub fn reads_indirectly(&self, area: &Area) -> bool {
-        self.read.may_be_in(area)
-    }
-
-    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address. The items of an
-    /// instance of a DFB have none.
-    pub fn has_unresolved(&self, wanted: impl Fn(Mode) -> bool) -> bool {
-        let is_item = |it: &ObjectUses<'_>| {
-            let instance = it.object.text.split_once('.').map(|it| UnitName::Instance(key(it.0)));
-            instance.is_some_and(|it| self.names.contains_key(&it))
-        };
-        self.objects.iter().any(|it| {
-            matches!(it.object.footprint.area, Area::Symbol(_))
-                && !is_item(it)
-                && !it.uses.iter().any(|it| matches!(it.mode, Mode::Drive(_)))
-                && it.uses.iter().any(|it| wanted(it.mode))
-        })
-    }
-
     /// The object of a use as its unit writes it.
     pub fn text_of(&self, it: &GlobalUse<'_>) -> &str {
         let objects = self.units.get(it.unit as usize).map_or(&[][..], |it| &it.objects);
         objects.get(it.it.object as usize).map_or("", |it| it.object.text.as_str())
-    }
-
-    /// Heading of a unit.
-    pub fn heading(unit: u32) -> Site {
-        Site { unit, anchor: 0 }
     }
 
     /// Index of the data block, FB, ... of that name.
@@ -639,28 +819,6 @@ impl<'a> ProgramIndex<'a> {
         let name = key(symbol);
         let mut symbols = self.units.iter().flat_map(|it| &it.symbols);
         symbols.any(|it| it.object.is_some() && key(&it.name) == name)
-    }
-
-    /// Pairs of distinct objects that share memory, by index, the earlier address first.
-    pub fn overlaps(&self) -> Vec<(u32, u32)> {
-        /// One object is compared with at most this many that start inside it.
-        const WINDOW: usize = 256;
-        let mut pairs = Vec::new();
-        for (at, a) in self.objects.iter().enumerate() {
-            let from = &a.object.footprint;
-            if !a.object.is_fixed() || matches!(from.area, Area::Symbol(_)) {
-                continue;
-            }
-            for (distance, b) in self.objects[at + 1..].iter().enumerate().take(WINDOW) {
-                if !from.overlaps(&b.object.footprint) {
-                    break;
-                }
-                if b.object.is_fixed() {
-                    pairs.push((as_index(at), as_index(at + 1 + distance)));
-                }
-            }
-        }
-        pairs
     }
 }
 
@@ -900,11 +1058,11 @@ fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -
     entry && closed
 }
 
-/// What a called block of the program does with an actual parameter.
-fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit: u32, it: &Use) -> Mode {
+/// What is done to the object of a use: of an actual parameter, what the called block of the program does with it.
+pub(super) fn actual_mode(skeleton: &Skeleton<'_>, unit: u32, it: &Use) -> Mode {
     let Some((call, formal)) = &it.parameter else { return it.mode };
-    let Some(&target) = targets.get(&(unit, *call)) else { return it.mode };
-    let facts = units[target as usize];
+    let Some(target) = skeleton.target_of(unit, *call) else { return it.mode };
+    let facts = skeleton.units[target as usize];
     match formal {
         Formal::Name(name) => {
             let mut declared = facts.declared.as_deref().map_or(&[][..], DataType::fields).iter();
@@ -926,10 +1084,10 @@ fn actual_mode(units: &[&UnitFacts], targets: &FxHashMap<(u32, u32), u32>, unit:
     }
 }
 
-fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>]) -> Vec<ObjectUses<'a>> {
-    let targets = calls.iter().filter_map(|it| Some(((it.unit, it.index), it.target?))).collect();
+fn collect<'a>(skeleton: &Skeleton<'a>, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
+    let units = &skeleton.units;
     let mut by_rank: Vec<u32> = (0..as_index(units.len())).collect();
-    by_rank.sort_by_key(|&it| order[it as usize]);
+    by_rank.sort_by_key(|&it| skeleton.order[it as usize]);
     // Which object of the program each object of each unit is.
     let mut ids: HashTable<u32> = HashTable::new();
     let mut firsts: Vec<&'a FactObject> = Vec::new();
@@ -940,7 +1098,7 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
         let facts = units[unit as usize];
         let local = &mut locals[unit as usize];
         local.extend(facts.objects.iter().map(|fact| {
-            if !facts::is_shared(&fact.object) {
+            if !facts::is_shared(&fact.object) || !wanted(&fact.object) {
                 return None;
             }
             let next = as_index(firsts.len());
@@ -954,6 +1112,10 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
             numbers[id as usize] |= fact.number;
             Some(id)
         }));
+        if local.iter().all(Option::is_none) {
+            local.clear();
+            continue;
+        }
         for it in &facts.uses {
             if let Some(Some(id)) = local.get(it.object as usize) {
                 counts[*id as usize] += 1;
@@ -967,13 +1129,11 @@ fn collect<'a>(units: &[&'a UnitFacts], order: &[u32], calls: &[GlobalCall<'_>])
         modes: Modes::default(),
     };
     let mut objects: Vec<ObjectUses<'a>> = firsts.iter().zip(numbers).zip(counts).map(object).collect();
+    by_rank.retain(|it| !locals[*it as usize].is_empty());
     for unit in by_rank {
         for it in &units[unit as usize].uses {
             if let Some(Some(id)) = locals[unit as usize].get(it.object as usize) {
-                let mode = actual_mode(units, &targets, unit, it);
-                let object = &mut objects[*id as usize];
-                object.uses.push(GlobalUse { unit, mode, it });
-                object.modes.insert(mode);
+                objects[*id as usize].push(skeleton, unit, it);
             }
         }
     }

@@ -53,7 +53,8 @@ impl Outline {
             while let Some(it) = accesses.next_if(|it| it.statement <= at) {
                 own.push(it);
             }
-            let mut form = Form { model, outline: &mut outline, hasher: FxHasher::default(), seen: FxHashMap::default() };
+            let mut form =
+                Form { model, outline: &mut outline, hasher: FxHasher::default(), seen: FxHashMap::default() };
             while labels.next_if(|it| it.statement <= at).map(|it| form.operand(&it.name, false)).is_some() {
                 "label".hash(&mut form.hasher);
             }
@@ -360,7 +361,8 @@ impl Renaming {
     fn extend(&mut self, here: &[Operand], there: &[Operand]) -> bool {
         here.len() == there.len()
             && here.iter().zip(there).all(|(a, b)| {
-                *self.there.entry(a.hash).or_insert(b.hash) == b.hash && *self.here.entry(b.hash).or_insert(a.hash) == a.hash
+                *self.there.entry(a.hash).or_insert(b.hash) == b.hash
+                    && *self.here.entry(b.hash).or_insert(a.hash) == a.hash
             })
     }
 
@@ -386,7 +388,11 @@ impl Linked {
             // A jump or a branch alone has no operands to bind it.
             || objects().next().is_none();
         for it in objects() {
-            if renaming.is_same(it) { self.same.insert(it.hash) } else { self.renamed.insert(it.hash) };
+            if renaming.is_same(it) {
+                self.same.insert(it.hash)
+            } else {
+                self.renamed.insert(it.hash)
+            };
         }
         is_first || is_linked
     }

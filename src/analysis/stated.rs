@@ -54,8 +54,8 @@ fn words(text: &str) -> Vec<String> {
 /// Letters of an address, which a number follows.
 fn is_area(word: &str) -> bool {
     const AREAS: &[&str] = &[
-        "mb", "mw", "md", "eb", "ew", "ed", "ib", "iw", "id", "ab", "aw", "ad", "qb", "qw", "qd", "pew", "piw", "ped", "pid",
-        "peb", "pib", "dbb", "dbw", "dbd", "db",
+        "mb", "mw", "md", "eb", "ew", "ed", "ib", "iw", "id", "ab", "aw", "ad", "qb", "qw", "qd", "pew", "piw", "ped",
+        "pid", "peb", "pib", "dbb", "dbw", "dbd", "db",
     ];
     AREAS.contains(&word)
 }
@@ -70,8 +70,10 @@ fn only(all: &[String], wanted: &[String]) -> Option<usize> {
 }
 
 fn is_negation(word: &str) -> bool {
-    const NEGATIONS: &[&str] =
-        &["n", "ne", "non", "pas", "sinon", "sauf", "nicht", "kein", "keine", "sonst", "not", "no", "never", "unless", "else"];
+    const NEGATIONS: &[&str] = &[
+        "n", "ne", "non", "pas", "sinon", "sauf", "nicht", "kein", "keine", "sonst", "not", "no", "never", "unless",
+        "else",
+    ];
     NEGATIONS.contains(&word)
 }
 
@@ -88,8 +90,8 @@ fn relation(between: &[String]) -> Option<Comparison> {
             | "größer" | "grösser" | "groesser" | "höher" | "greater" | "bigger" | "larger" | "higher" | "exceeds" => {
                 Comparison::Gt
             }
-            "inférieur" | "inférieure" | "inferieur" | "inferieure" | "petit" | "petite" | "kleiner" | "niedriger" | "less"
-            | "smaller" | "lower" => Comparison::Lt,
+            "inférieur" | "inférieure" | "inferieur" | "inferieure" | "petit" | "petite" | "kleiner" | "niedriger"
+            | "less" | "smaller" | "lower" => Comparison::Lt,
             "égal" | "égale" | "egal" | "egale" | "gleich" | "equal" | "equals" => {
                 is_equal = true;
                 continue;
@@ -110,9 +112,9 @@ fn relation(between: &[String]) -> Option<Comparison> {
 
 fn is_filler(word: &str) -> bool {
     const FILLERS: &[&str] = &[
-        "est", "soit", "plus", "que", "qu", "à", "a", "au", "aux", "de", "du", "la", "le", "les", "l", "d", "celui", "celle",
-        "contenu", "valeur", "mot", "ou", "ist", "wird", "als", "der", "die", "das", "dem", "den", "wert", "inhalt", "von", "oder",
-        "is", "gets", "than", "the", "of", "to", "value", "content", "contents", "or", "that",
+        "est", "soit", "plus", "que", "qu", "à", "a", "au", "aux", "de", "du", "la", "le", "les", "l", "d", "celui",
+        "celle", "contenu", "valeur", "mot", "ou", "ist", "wird", "als", "der", "die", "das", "dem", "den", "wert",
+        "inhalt", "von", "oder", "is", "gets", "than", "the", "of", "to", "value", "content", "contents", "or", "that",
     ];
     FILLERS.contains(&word)
 }

@@ -189,12 +189,11 @@ impl SymbolTable {
     }
 }
 
-/// The facts of the units of a program with every symbol that the table knows replaced by its object.
-pub fn resolve<'a>(table: &SymbolTable, units: &[&'a UnitFacts]) -> Vec<Cow<'a, UnitFacts>> {
-    units.iter().map(|&it| if table.is_empty() { Cow::Borrowed(it) } else { resolve_unit(table, it) }).collect()
-}
-
-fn resolve_unit<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFacts> {
+/// The facts of a unit with every symbol that the table knows replaced by its object.
+pub fn resolve<'a>(table: &SymbolTable, facts: &'a UnitFacts) -> Cow<'a, UnitFacts> {
+    if table.is_empty() {
+        return Cow::Borrowed(facts);
+    }
     let found: Vec<Option<Object>> = facts.objects.iter().map(|it| table.resolve(&it.object)).collect();
     if found.iter().all(Option::is_none) && !names_blocks(facts) {
         return Cow::Borrowed(facts);

@@ -13,6 +13,9 @@ use crate::syntax::Language;
 pub enum Check {
     /// One unit, alone.
     Unit(fn(&UnitCx<'_>, &mut Sink<'_, TextRange>)),
+    /// The objects of a program, each with those that share its memory: see [`islands`](crate::analysis::islands) for what
+    /// such a rule may ask. The context may hold some islands of the program alone.
+    Object(fn(&ProgramCx<'_>, &mut Sink<'_, Site>)),
     /// The facts of all units of a program.
     Program(fn(&ProgramCx<'_>, &mut Sink<'_, Site>)),
     /// A file after all else: suppressions and what could not be read.
@@ -23,6 +26,7 @@ impl std::fmt::Debug for Check {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Unit(_) => "Unit",
+            Self::Object(_) => "Object",
             Self::Program(_) => "Program",
             Self::File(_) => "File",
         })

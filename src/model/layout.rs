@@ -303,7 +303,7 @@ impl Shape {
 }
 
 /// The layouts of named types, as far as a program declares them.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub struct Layouts {
     known: FxHashMap<BlockName, Option<Arc<Layout>>>,
 }

@@ -1,6 +1,6 @@
 //! What stands at a place, in terms of the program: what all requests about a position share.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use rowan::{TextRange, TextSize};
 use smol_str::SmolStr;
@@ -144,7 +144,7 @@ pub(super) fn program_with<'s>(it: InFile<'s>, unit: Unit<'s>) -> Option<(Progra
 pub(super) struct InProgram<'s> {
     pub(super) it: InFile<'s>,
     pub(super) program: Program<'s>,
-    facts: Vec<Cow<'s, UnitFacts>>,
+    facts: Vec<Arc<UnitFacts>>,
 }
 
 impl<'s> InProgram<'s> {

@@ -254,9 +254,9 @@ fn first_behind(op: Op) -> Option<First> {
         Op::Assign | Op::Set | Op::Reset | Op::SetRlo | Op::ClearRlo | Op::Timer(_) | Op::Enable => Some(First::Yes),
         Op::CountUp | Op::CountDown | Op::Call | Op::CallUnconditional | Op::CallConditional => Some(First::Yes),
         Op::McrOpen | Op::McrClose | Op::BlockEndConditional => Some(First::Yes),
-        Op::Jump(
-            JumpIf::Rlo | JumpIf::NotRlo | JumpIf::RloSave | JumpIf::NotRloSave | JumpIf::Br | JumpIf::NotBr,
-        ) => Some(First::Yes),
+        Op::Jump(JumpIf::Rlo | JumpIf::NotRlo | JumpIf::RloSave | JumpIf::NotRloSave | JumpIf::Br | JumpIf::NotBr) => {
+            Some(First::Yes)
+        }
         _ => None,
     }
 }

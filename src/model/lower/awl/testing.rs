@@ -162,7 +162,8 @@ struct Open {
 /// Runs a program from some state; `None` for each line that is passed by. Ends early where the controller would stop, with
 /// the line.
 fn run(lines: &[Line], numbers: &mut Numbers) -> (Vec<Option<Visit>>, Option<usize>) {
-    let mut memory: Memory = BITS.iter().chain(&["M1.0", "M1.1"]).map(|&it| (it.to_owned(), Value::Bit(numbers.bit()))).collect();
+    let mut memory: Memory =
+        BITS.iter().chain(&["M1.0", "M1.1"]).map(|&it| (it.to_owned(), Value::Bit(numbers.bit()))).collect();
     for &it in WORDS {
         memory.insert(it.to_owned(), Value::Word(numbers.of(&[0, 1, 2])));
     }
@@ -444,7 +445,8 @@ fn accumulators_and_jump_lists() {
 #[test]
 fn everything_at_once() {
     let others = &[
-        "U(", "O(", "X(", "O", "NOT", "SET", "CLR", "SAVE", "FP", "L", "T", "==I", "MCRA", "MCRD", "MCR(", ")MCR", "SPL",
+        "U(", "O(", "X(", "O", "NOT", "SET", "CLR", "SAVE", "FP", "L", "T", "==I", "MCRA", "MCRD", "MCR(", ")MCR",
+        "SPL",
     ];
     let jumps = &["SPA", "SPB", "SPBN", "SPBB", "SPBNB", "SPBI", "SPBIN", "BEB", "BEA"];
     agree(&Mix { checks: CHECKS, others, jumps, most: 40 }, 600, 30);

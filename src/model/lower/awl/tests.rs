@@ -310,7 +310,10 @@ fn writes_under_the_master_control_relay() {
     let code = "MCRA\nU E0.0\nMCR(\nU E0.1\nMCR(\nU E0.2\n= A4.0\n)MCR\nU E0.3\n= A4.1\n)MCR\nMCRD";
     assert_eq!(values(code), ["(E0.2 & (E0.0 & E0.1))", "(E0.3 & E0.0)"]);
     assert_eq!(values("U E0.0\nMCR(\nU E0.1\n= A4.0\n)MCR"), ["E0.1"]);
-    assert_eq!(values("MCRA\nU E0.0\nMCR(\nMCRD\nU E0.1\n= A4.0\nMCRA\nU E0.2\n= A4.1\n)MCR"), ["E0.1", "(E0.2 & E0.0)"]);
+    assert_eq!(
+        values("MCRA\nU E0.0\nMCR(\nMCRD\nU E0.1\n= A4.0\nMCRA\nU E0.2\n= A4.1\n)MCR"),
+        ["E0.1", "(E0.2 & E0.0)"]
+    );
     // Words become 0.
     let stored = |code: &str| {
         let model = block(code);
@@ -365,7 +368,8 @@ fn residue_of_compiled_ladder() {
 
 #[test]
 fn jump_lists_and_loops() {
-    let code = "L MB0\nSPL E3\nSPA E1\nSPA E2\nE3: SPA EE\nE1: U E0.0\n= A4.0\nSPA EE\nE2: U E0.1\n= A4.1\nEE: U E0.2\n= A4.2";
+    let code =
+        "L MB0\nSPL E3\nSPA E1\nSPA E2\nE3: SPA EE\nE1: U E0.0\n= A4.0\nSPA EE\nE2: U E0.1\n= A4.1\nEE: U E0.2\n= A4.2";
     assert_eq!((names(code), values(code)), (vec![], vec!["E0.0".to_owned(), "E0.1".to_owned(), "E0.2".to_owned()]));
     let code = "L 5\nW1: T MW0\nL MW2\nL MW4\n+I\nT MW2\nL MW0\nLOOP W1\nU E0.0\n= A4.0";
     assert_eq!((names(code), last_path(code)), (vec![], "!?".to_owned()));
@@ -379,7 +383,9 @@ fn step5_jumps_and_ends() {
         assert_eq!(parse.errors(), [], "{text}");
         lower(parse.syntax(), Entity::Listing, Language::Step5(Mnemonics::German))
     };
-    let model = of(":U E 0.0\n:SPB =M001\n:U E 0.1\n:= A 4.0\nM001 :U E 0.2\n:= A 4.1\n:***\n:U E 0.3\n:BEB\n:U E 0.4\n:= A 4.2");
+    let model = of(
+        ":U E 0.0\n:SPB =M001\n:U E 0.1\n:= A 4.0\nM001 :U E 0.2\n:= A 4.1\n:***\n:U E 0.3\n:BEB\n:U E 0.4\n:= A 4.2",
+    );
     assert!(model.oddities.is_empty() && model.unreachable.is_empty(), "{:?}", model.oddities);
     let acts = model.statements.iter().filter(|it| matches!(it.kind, StatementKind::Assign { .. }));
     let paths: Vec<String> = acts.map(|it| show(&model, it.path)).collect();

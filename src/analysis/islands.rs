@@ -1,0 +1,333 @@
+//! Which objects of a program an edit can make a rule judge anew.
+//!
+//! An island is an object with all that share memory with it, directly or by way of others, or stand at one place with it,
+//! or are passed by for one cause.
+//!
+//! **Invariant:** a rule that looks at objects one by one says of an island what follows from its uses, from the units that
+//! hold them and the calls which lead there, from the outline of the other units ([`UnitFacts::has_outline_of`]) and from
+//! the program's [`Summary`]; it says it at one of those uses. What it says of objects that a unit has for itself, it says of
+//! [`ProgramIndex::judged_units`], at a place that no other object is used at. So an edit that leaves outlines and summary as they are
+//! moves only the islands of the units that it changes.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use hashbrown::HashTable;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::Site;
+use super::facts::{self, FactObject, UnitFacts, Use};
+use super::program::{Modes, ObjectUses, ProgramIndex, Skeleton, Summary, actual_mode};
+use crate::model::object::{Area, Footprint, Object};
+use crate::model::unit::Mode;
+
+/// No object of the program.
+const NONE: u32 = u32::MAX;
+
+/// An object of the program, whichever units use it.
+#[derive(Debug)]
+struct Known {
+    /// As the unit wrote it that was the first to name it.
+    fact: FactObject,
+    area: u32,
+    /// Units that use it, with the number of the object there.
+    units: Vec<(u32, u32)>,
+    modes: Modes,
+}
+
+/// What a unit holds of the objects of the program.
+#[derive(Debug)]
+struct Held {
+    facts: Arc<UnitFacts>,
+    /// Of each object of the unit, which one of the program it is.
+    ids: Vec<u32>,
+    /// Where in `uses` those of each object end; they begin where those of the one before end.
+    ends: Vec<u32>,
+    /// Indices into the uses of the unit, by object, in order.
+    uses: Vec<u32>,
+    /// Objects of the program that stand at one place, in pairs.
+    together: Vec<(u32, u32)>,
+    /// Of the uses of objects that are [`Summary::is_addressed`].
+    addressed: Modes,
+}
+
+impl Held {
+    fn uses_of(&self, object: u32) -> impl Iterator<Item = &Use> {
+        let at = object as usize;
+        let start = at.checked_sub(1).and_then(|it| self.ends.get(it)).copied().unwrap_or_default();
+        let end = self.ends.get(at).copied().unwrap_or_default();
+        let uses = self.uses.get(start as usize..end as usize).unwrap_or_default();
+        uses.iter().filter_map(|it| self.facts.uses.get(*it as usize))
+    }
+
+    /// The objects of the program that are used, each once for each object of the unit that it is.
+    fn used(&self) -> impl Iterator<Item = (u32, u32)> {
+        let is_used = |at: u32| self.uses_of(at).next().is_some();
+        (0..).zip(&self.ids).filter(move |&(at, &id)| id != NONE && is_used(at)).map(|(at, &id)| (at, id))
+    }
+}
+
+/// The objects of a program, kept from edit to edit.
+#[derive(Debug, Default)]
+pub struct Islands {
+    ids: HashTable<u32>,
+    objects: Vec<Known>,
+    units: Vec<Held>,
+    areas: FxHashMap<Area, u32>,
+    /// Objects that lie in each byte of each area.
+    bytes: FxHashMap<(u32, u32), Vec<u32>>,
+    /// Of each area, those that are too large to stand in each of their bytes.
+    large: FxHashMap<u32, Vec<u32>>,
+}
+
+/// An object of more bytes is compared with all others of its area.
+const MANY_BYTES: u32 = 1024;
+
+fn bytes_of(place: &Footprint) -> std::ops::RangeInclusive<u32> {
+    match place.area {
+        // The items of a block are one thing.
+        Area::Block(..) => 0..=0,
+        _ => place.start / 8..=place.end().saturating_sub(1) / 8,
+    }
+}
+
+/// Whether findings about one may speak of the other: they share memory, are items of one block, or lie in one byte of
+/// words, which are missed together.
+fn is_near(a: &Footprint, b: &Footprint) -> bool {
+    match a.area {
+        Area::Block(..) => true,
+        Area::Words => bytes_of(a).start() <= bytes_of(b).end() && bytes_of(b).start() <= bytes_of(a).end(),
+        _ => a.start < b.end() && b.start < a.end(),
+    }
+}
+
+impl Islands {
+    pub fn new(skeleton: &Skeleton<'_>, facts: &[Arc<UnitFacts>]) -> Self {
+        let mut islands = Self::default();
+        for (unit, facts) in (0..).zip(facts) {
+            let held = islands.hold(skeleton, unit, facts);
+            islands.units.push(held);
+            islands.enter(unit);
+        }
+        for id in 0..index(islands.objects.len()) {
+            islands.set_modes(skeleton, id);
+        }
+        islands
+    }
+
+    /// Takes new facts of some units. Returns the objects that they use or used.
+    pub fn update(&mut self, skeleton: &Skeleton<'_>, changed: &[(u32, Arc<UnitFacts>)]) -> FxHashSet<u32> {
+        let mut moved = FxHashSet::default();
+        for (unit, facts) in changed {
+            let held = self.hold(skeleton, *unit, facts);
+            let Some(old) = self.units.get_mut(*unit as usize).map(|it| std::mem::replace(it, held)) else { continue };
+            for (_, id) in old.used() {
+                moved.insert(id);
+                self.objects[id as usize].units.retain(|it| it.0 != *unit);
+            }
+            self.enter(*unit);
+            moved.extend(self.used_in(*unit));
+        }
+        for &id in &moved {
+            self.set_modes(skeleton, id);
+        }
+        moved
+    }
+
+    /// The objects that a unit uses.
+    pub fn used_in(&self, unit: u32) -> impl Iterator<Item = u32> {
+        self.units.get(unit as usize).into_iter().flat_map(|it| it.used().map(|it| it.1))
+    }
+
+    fn hold(&mut self, skeleton: &Skeleton<'_>, unit: u32, facts: &Arc<UnitFacts>) -> Held {
+        let ids: Vec<u32> =
+            facts.objects.iter().map(|it| if facts::is_shared(&it.object) { self.id(it) } else { NONE }).collect();
+        let mut ends = vec![0; facts.objects.len()];
+        for it in &facts.uses {
+            if let Some(end) = ends.get_mut(it.object as usize) {
+                *end += 1;
+            }
+        }
+        let mut sum = 0;
+        for end in &mut ends {
+            sum += std::mem::replace(end, sum);
+        }
+        let mut uses = vec![0; sum as usize];
+        for (at, it) in (0..).zip(&facts.uses) {
+            if let Some(end) = ends.get_mut(it.object as usize) {
+                uses[*end as usize] = at;
+                *end += 1;
+            }
+        }
+        let id = |it: &Use| ids.get(it.object as usize).copied().unwrap_or(NONE);
+        let mut places: Vec<(u32, u32)> = facts.uses.iter().map(|it| (it.anchor, id(it))).collect();
+        places.retain(|it| it.1 != NONE);
+        places.sort_unstable();
+        places.dedup();
+        let mut together: Vec<(u32, u32)> =
+            places.windows(2).filter(|it| it[0].0 == it[1].0).map(|it| (it[0].1, it[1].1)).collect();
+        // What one condition, jump or call passes by has one cause, and is told in one finding.
+        let missed =
+            (0..).zip(&facts.objects).filter_map(|(at, it)| Some(((it.missed?, false), *ids.get::<usize>(at)?)));
+        let is_passed_by = skeleton.is_passed_by(unit);
+        let is_edge = |it: &&Use| it.mode.is_edge() || it.mode == Mode::EdgeMemory;
+        let is_skipped = |it: &&Use| it.skipped_by.is_some() || is_passed_by;
+        let skipped = facts.uses.iter().filter(is_edge).filter(is_skipped);
+        let mut causes: Vec<((u32, bool), u32)> =
+            missed.chain(skipped.map(|it| ((it.skipped_by.unwrap_or(NONE), true), id(it)))).collect();
+        causes.retain(|it| it.1 != NONE);
+        causes.sort_unstable();
+        causes.dedup();
+        together.extend(causes.windows(2).filter(|it| it[0].0 == it[1].0).map(|it| (it[0].1, it[1].1)));
+        let mut addressed = Modes::default();
+        for it in &facts.uses {
+            if facts.objects.get(it.object as usize).is_some_and(|it| Summary::is_addressed(&it.object)) {
+                addressed.insert(actual_mode(skeleton, unit, it));
+            }
+        }
+        Held { facts: facts.clone(), ids, ends, uses, together, addressed }
+    }
+
+    fn id(&mut self, fact: &FactObject) -> u32 {
+        let objects = &self.objects;
+        let is_same = |&id: &u32| fact.is_same(&objects[id as usize].fact);
+        if let Some(&id) = self.ids.find(fact.hash, is_same) {
+            return id;
+        }
+        let id = index(self.objects.len());
+        self.ids.insert_unique(fact.hash, id, |&it| objects[it as usize].fact.hash);
+        let place = &fact.object.footprint;
+        let next = index(self.areas.len());
+        let area = match self.areas.get(&place.area) {
+            Some(&area) => area,
+            None => *self.areas.entry(place.area.clone()).or_insert(next),
+        };
+        let bytes = bytes_of(place);
+        if bytes.end() - bytes.start() < MANY_BYTES {
+            for byte in bytes {
+                self.bytes.entry((area, byte)).or_default().push(id);
+            }
+        } else {
+            self.large.entry(area).or_default().push(id);
+        }
+        self.objects.push(Known { fact: fact.clone(), area, units: Vec::new(), modes: Modes::default() });
+        id
+    }
+
+    fn enter(&mut self, unit: u32) {
+        let Some(held) = self.units.get(unit as usize) else { return };
+        for (at, id) in held.used() {
+            self.objects[id as usize].units.push((unit, at));
+        }
+    }
+
+    fn set_modes(&mut self, skeleton: &Skeleton<'_>, id: u32) {
+        let mut modes = Modes::default();
+        for &(unit, at) in &self.objects[id as usize].units {
+            for it in self.units[unit as usize].uses_of(at) {
+                modes.insert(actual_mode(skeleton, unit, it));
+            }
+        }
+        self.objects[id as usize].modes = modes;
+    }
+
+    pub fn summary(&self, skeleton: &Skeleton<'_>) -> Summary {
+        let used = self.objects.iter().filter(|it| !it.units.is_empty());
+        let mut addressed = Modes::default();
+        self.units.iter().for_each(|it| addressed.join(it.addressed));
+        Summary::new(skeleton, used.map(|it| (&it.fact.object, it.modes)), addressed)
+    }
+
+    /// Adds all objects of the islands that some of them lie on.
+    pub fn close(&self, objects: &mut FxHashSet<u32>) {
+        let mut open: Vec<u32> = objects.iter().copied().collect();
+        while let Some(id) = open.pop() {
+            let it = &self.objects[id as usize];
+            let place = &it.fact.object.footprint;
+            let mut visit = |other: u32| {
+                let near = || is_near(place, &self.objects[other as usize].fact.object.footprint);
+                if !objects.contains(&other) && near() {
+                    objects.insert(other);
+                    open.push(other);
+                }
+            };
+            let bytes = bytes_of(place);
+            if bytes.end() - bytes.start() < MANY_BYTES {
+                for byte in bytes {
+                    self.bytes.get(&(it.area, byte)).into_iter().flatten().for_each(|&it| visit(it));
+                }
+                self.large.get(&it.area).into_iter().flatten().for_each(|&it| visit(it));
+            } else {
+                (0..).zip(&self.objects).filter(|other| other.1.area == it.area).for_each(|it| visit(it.0));
+            }
+            for &(unit, _) in &it.units {
+                for &(a, b) in &self.units[unit as usize].together {
+                    let other = if a == id {
+                        b
+                    } else if b == id {
+                        a
+                    } else {
+                        continue;
+                    };
+                    if objects.insert(other) {
+                        open.push(other);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The objects that are used at a place.
+    pub fn at(&self, site: Site) -> Vec<u32> {
+        let Some(held) = self.units.get(site.unit as usize) else { return Vec::new() };
+        let uses = held.facts.uses.iter().filter(|it| it.anchor == site.anchor);
+        let ids = uses.filter_map(|it| held.ids.get(it.object as usize).copied());
+        ids.filter(|it| *it != NONE).collect()
+    }
+
+    /// The program with some of its objects alone. `skeleton` is that of the facts which were taken last.
+    pub fn part<'a>(
+        &self,
+        skeleton: &Rc<Skeleton<'a>>,
+        objects: &FxHashSet<u32>,
+        changed: &[u32],
+        summary: Summary,
+    ) -> ProgramIndex<'a> {
+        let rank = |unit: u32| skeleton.order.get(unit as usize).copied().unwrap_or(NONE);
+        let mut found = Vec::with_capacity(objects.len());
+        for &id in objects {
+            let mut units = self.objects[id as usize].units.clone();
+            units.sort_unstable_by_key(|&(unit, at)| (rank(unit), at));
+            let fact = |&(unit, at): &(u32, u32)| skeleton.units.get(unit as usize)?.objects.get(at as usize);
+            let Some(first) = units.first().and_then(fact) else { continue };
+            let mut uses = ObjectUses::new(&first.object);
+            uses.number = units.iter().filter_map(fact).any(|it| it.number);
+            for (unit, of_unit) in units.chunk_by(|a, b| a.0 == b.0).map(|it| (it[0].0, it)) {
+                let held = &self.units[unit as usize];
+                let mut all: Vec<u32> = Vec::new();
+                for &(_, at) in of_unit {
+                    let start = at.checked_sub(1).map_or(0, |it| held.ends[it as usize]);
+                    all.extend(&held.uses[start as usize..held.ends[at as usize] as usize]);
+                }
+                if of_unit.len() > 1 {
+                    all.sort_unstable();
+                }
+                let facts: &'a UnitFacts = skeleton.units[unit as usize];
+                all.into_iter()
+                    .filter_map(|it| facts.uses.get(it as usize))
+                    .for_each(|it| uses.push(skeleton, unit, it));
+            }
+            found.push((rank(units[0].0), units[0].1, uses));
+        }
+        found.sort_unstable_by(|a, b| {
+            let key = |it: &'_ Object| (it.footprint.start, u32::MAX - it.footprint.bits);
+            let (x, y) = (a.2.object, b.2.object);
+            x.footprint.area.cmp(&y.footprint.area).then_with(|| (key(x), a.0, a.1).cmp(&(key(y), b.0, b.1)))
+        });
+        ProgramIndex::part(skeleton.clone(), found.into_iter().map(|it| it.2).collect(), changed.into(), summary)
+    }
+}
+
+fn index(at: usize) -> u32 {
+    u32::try_from(at).unwrap_or(NONE)
+}

@@ -1,0 +1,136 @@
+//! What is found after an edit is what a fresh run finds, though only the objects that the edit touches are judged anew.
+
+use std::path::{Path, PathBuf};
+
+use plclint::db::{self, FileFinding, RootDatabase, SourceFile};
+use plclint::lint::settings::{FILE_NAME, Folders, Overrides, Settings};
+use plclint::load;
+use plclint::source::detect::Dialect;
+
+/// A sequence of numbers that is the same on every machine (Marsaglia's xorshift).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        usize::try_from(self.0 % end.max(1) as u64).unwrap()
+    }
+}
+
+fn settings(folder: &Path) -> Settings {
+    let text = std::fs::read_to_string(folder.join(FILE_NAME)).unwrap_or_default();
+    Settings::parse(&text, Path::new(FILE_NAME), Folders::default(), Overrides::default()).unwrap()
+}
+
+fn open(inputs: Vec<db::Input>, settings: Settings) -> (RootDatabase, Vec<SourceFile>) {
+    let mut db = RootDatabase::new(settings, None);
+    let files = db.set_files(inputs);
+    (db, files)
+}
+
+/// All findings with all their places.
+fn found(db: &RootDatabase, files: &[SourceFile]) -> Vec<String> {
+    let place = |it: &db::FilePlace| format!("{}:{:?}", it.file.path(db), it.range);
+    let line = |it: &FileFinding| {
+        let FileFinding { finding, suppressed, .. } = it;
+        let related: Vec<String> =
+            finding.related.iter().map(|it| format!("{} {}", place(&it.place), it.message)).collect();
+        format!(
+            "{} {} {:?} {} {related:?} {:?} {suppressed:?}",
+            place(&finding.place),
+            finding.rule.code,
+            finding.severity,
+            finding.message,
+            finding.notes
+        )
+    };
+    let all = files.iter().flat_map(|&file| db::file_findings(db, file)).map(line);
+    all.chain(db::configuration_findings(db).iter().map(line)).collect()
+}
+
+/// One edit as people make them: mostly such that the text goes on to mean something.
+fn edited(text: &str, numbers: &mut Numbers) -> String {
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let line = numbers.below(lines.len());
+    match numbers.below(6) {
+        // Another number: most are addresses.
+        0..=2 => {
+            let digits: Vec<usize> =
+                text.bytes().enumerate().filter(|it| it.1.is_ascii_digit()).map(|it| it.0).collect();
+            let Some(&at) = digits.get(numbers.below(digits.len())) else { return text.to_owned() };
+            format!("{}{}{}", &text[..at], numbers.below(10), &text[at + 1..])
+        }
+        3 => lines.iter().enumerate().filter(|it| it.0 != line).map(|it| *it.1).collect(),
+        4 => {
+            let mut lines = lines;
+            let copied = lines[line];
+            lines.insert(numbers.below(lines.len() + 1), copied);
+            lines.concat()
+        }
+        _ => {
+            let mut lines = lines;
+            if line > 0 {
+                lines.swap(line - 1, line);
+            }
+            lines.concat()
+        }
+    }
+}
+
+fn edit_at_random(folder: &Path, seed: u64, edits: usize) {
+    let settings = settings(folder);
+    let inputs = load::read(&[folder.to_owned()], &settings, Dialect::Auto).inputs;
+    let (mut db, files) = open(inputs.clone(), settings.clone());
+    let mut texts: Vec<String> = inputs.iter().map(|it| it.source.text.to_string()).collect();
+    let mut numbers = Numbers(seed);
+    let mut undo: Vec<(usize, String)> = Vec::new();
+    found(&db, &files);
+    for n in 0..edits {
+        let at = numbers.below(texts.len());
+        let (at, text) = match undo.pop() {
+            // Most edits are taken back, so that the program stays one.
+            Some(it) if numbers.below(5) > 1 => it,
+            other => {
+                undo.extend(other);
+                undo.push((at, texts[at].clone()));
+                (at, edited(&texts[at], &mut numbers))
+            }
+        };
+        db.set_text(files[at], text.as_str());
+        texts[at] = text;
+        let mut fresh = inputs.clone();
+        for (input, text) in fresh.iter_mut().zip(&texts) {
+            input.source.text = text.as_str().into();
+        }
+        let (fresh, of_fresh) = open(fresh, settings.clone());
+        assert_eq!(found(&db, &files), found(&fresh, &of_fresh), "{} after {n} edits", folder.display());
+    }
+}
+
+fn corpus(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(folder);
+    let mut folders: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|it| it.unwrap().path()).collect();
+    folders.sort();
+    folders.retain(|it| it.is_dir());
+    folders
+}
+
+fn edits() -> usize {
+    std::env::var("PLCLINT_EDITS").ok().and_then(|it| it.parse().ok()).unwrap_or(24)
+}
+
+#[test]
+fn programs_may_be_edited() {
+    for (seed, folder) in (1..).zip(corpus("programs")) {
+        edit_at_random(&folder, seed * 0x9e37_79b9, edits());
+    }
+}
+
+#[test]
+fn charts_may_be_edited() {
+    for (seed, folder) in (1..).zip(corpus("charts")) {
+        edit_at_random(&folder, seed * 0x2545_f491, edits() / 3);
+    }
+}
