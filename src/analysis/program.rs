@@ -1228,7 +1228,7 @@ mod tests {
     #[test]
     fn parts_of_pl7_2_run_in_their_own_order() {
         let units = units(&["PL7-2 FAST", "PL7-2 POST", "PL7-2 SEQ - X1", "PL7-2 PRL", "PL7-2 SEQ"]);
-        let order = |family| ProgramIndex::new(family, units.iter().collect()).order;
+        let order = |family| ProgramIndex::new(family, units.iter().collect()).order.clone();
         assert_eq!(order(Family::Pl72), [4, 3, 1, 0, 2]);
         assert_eq!(order(Family::Step7), [0, 1, 2, 3, 4]);
     }
@@ -1243,7 +1243,7 @@ mod tests {
             "MAST - P - CHART - PAGE 1",
             "FAST - MAIN",
         ]);
-        let order = ProgramIndex::new(Family::Pl7, units.iter().collect()).order;
+        let order = ProgramIndex::new(Family::Pl7, units.iter().collect()).order.clone();
         assert_eq!(order, [1, 3, 4, 0, 2, 5]);
     }
 }

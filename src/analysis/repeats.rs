@@ -37,7 +37,16 @@ struct Item {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Operand {
     hash: u64,
-    is_object: bool,
+    role: Role,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Role {
+    Object,
+    /// A constant, or a value that is not known.
+    Value,
+    /// A label, or the condition under which control is there.
+    Way,
 }
 
 /// A statement of more expressions is not compared.
@@ -55,7 +64,7 @@ impl Outline {
             }
             let mut form =
                 Form { model, outline: &mut outline, hasher: FxHasher::default(), seen: FxHashMap::default() };
-            while labels.next_if(|it| it.statement <= at).map(|it| form.operand(&it.name, false)).is_some() {
+            while labels.next_if(|it| it.statement <= at).map(|it| form.operand(&it.name, Role::Way)).is_some() {
                 "label".hash(&mut form.hasher);
             }
             let anchor = form.statement(&statement.kind, &own);
@@ -78,9 +87,9 @@ struct Form<'a> {
 }
 
 impl Form<'_> {
-    fn operand(&mut self, it: impl Hash, is_object: bool) {
-        let hash = FxBuildHasher.hash_one((is_object, it));
-        self.outline.operands.push(Operand { hash, is_object });
+    fn operand(&mut self, it: impl Hash, role: Role) {
+        let hash = FxBuildHasher.hash_one((role, it));
+        self.outline.operands.push(Operand { hash, role });
     }
 
     fn object(&mut self, id: ObjectId) {
@@ -89,7 +98,7 @@ impl Form<'_> {
         ("object", object.ty, object.indexed, object.extracted).hash(&mut self.hasher);
         let is_block = matches!(object.ty, crate::model::object::Type::Block);
         is_block.then_some(object.class).hash(&mut self.hasher);
-        self.operand((&object.footprint, object.ty), true);
+        self.operand((&object.footprint, object.ty), Role::Object);
     }
 
     fn statement(&mut self, kind: &StatementKind, own: &[&Access]) -> Option<u32> {
@@ -122,7 +131,7 @@ impl Form<'_> {
             StatementKind::Jump(at) => {
                 let jump = model.jumps.get(at as usize)?;
                 self.expr(jump.when);
-                self.operand(&jump.label, false);
+                self.operand(&jump.label, Role::Way);
                 Some(jump.anchor)
             }
             StatementKind::Return { when, how } => {
@@ -149,7 +158,7 @@ impl Form<'_> {
         let is_certain = path == Exprs::TRUE;
         is_certain.hash(&mut self.hasher);
         if !is_certain {
-            self.operand(path, false);
+            self.operand(path, Role::Way);
         }
     }
 
@@ -187,10 +196,10 @@ impl Form<'_> {
         std::mem::discriminant(node).hash(&mut self.hasher);
         match node {
             Expr::Bool(it) => it.hash(&mut self.hasher),
-            Expr::Int(it) => self.operand(it, false),
-            Expr::Float(it) => self.operand(it, false),
-            Expr::Text(it) => self.operand(it, false),
-            Expr::Opaque(it) => self.operand(it, false),
+            Expr::Int(it) => self.operand(it, Role::Value),
+            Expr::Float(it) => self.operand(it, Role::Value),
+            Expr::Text(it) => self.operand(it, Role::Value),
+            Expr::Opaque(it) => self.operand(it, Role::Value),
             Expr::Read { object, .. } => self.object(*object),
             Expr::Edge { object, rising, .. } => {
                 rising.hash(&mut self.hasher);
@@ -318,7 +327,7 @@ impl<'a> All<'a> {
     fn grow(&self, at: usize, others: &[usize], covered: &[bool], saved: usize) -> Option<(usize, Vec<usize>)> {
         let mut alive: Vec<(usize, Renaming)> = others.iter().map(|&it| (it, Renaming::default())).collect();
         let mut linked = Linked::default();
-        let mut best: Option<(usize, Vec<usize>)> = None;
+        let mut best: Option<(usize, usize, Vec<usize>)> = None;
         for length in 1..=LONGEST {
             let last = at + length - 1;
             if self.unit(last) != self.unit(at) || covered.get(last).is_none_or(|it| *it) {
@@ -341,12 +350,12 @@ impl<'a> All<'a> {
             if !linked.extend(self.operands(last, 1), renaming) {
                 break;
             }
-            let saves = alive.len() * length;
-            if length >= SHORTEST && saves >= saved && best.as_ref().is_none_or(|it| it.1.len() * it.0 <= saves) {
-                best = Some((length, alive.iter().map(|it| it.0).collect()));
+            let saves = alive.len() * linked.acting;
+            if linked.acting >= SHORTEST && saves >= saved && best.as_ref().is_none_or(|it| it.0 <= saves) {
+                best = Some((saves, length, alive.iter().map(|it| it.0).collect()));
             }
         }
-        best
+        best.map(|(_, length, copies)| (length, copies))
     }
 }
 
@@ -377,16 +386,22 @@ impl Renaming {
 struct Linked {
     renamed: FxHashSet<u64>,
     same: FxHashSet<u64>,
+    other_values: bool,
+    /// Statements that work on objects.
+    acting: usize,
 }
 
 impl Linked {
     fn extend(&mut self, operands: &[Operand], renaming: &Renaming) -> bool {
-        let objects = || operands.iter().filter(|it| it.is_object);
-        let is_first = self.renamed.is_empty() && self.same.is_empty();
-        let is_linked = objects().any(|it| self.renamed.contains(&it.hash))
-            || self.renamed.is_empty() && objects().any(|it| self.same.contains(&it.hash))
-            // A jump or a branch alone has no operands to bind it.
-            || objects().next().is_none();
+        let objects = || operands.iter().filter(|it| it.role == Role::Object);
+        self.other_values |= operands.iter().any(|it| it.role == Role::Value && !renaming.is_same(it));
+        if objects().next().is_none() {
+            // A jump or a branch alone has nothing to bind it.
+            return true;
+        }
+        let all_same = self.renamed.is_empty() && !self.other_values;
+        let is_linked = self.acting == 0
+            || objects().any(|it| self.renamed.contains(&it.hash) || all_same && self.same.contains(&it.hash));
         for it in objects() {
             if renaming.is_same(it) {
                 self.same.insert(it.hash)
@@ -394,6 +409,7 @@ impl Linked {
                 self.renamed.insert(it.hash)
             };
         }
-        is_first || is_linked
+        self.acting += 1;
+        is_linked
     }
 }

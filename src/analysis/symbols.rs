@@ -359,8 +359,8 @@ mod tests {
             "! Pump := Tempo.Q; Etat := Four; Etat:X1 := %M3; Etat[Four] := 2; Etat:3 := 0; Other := 1;",
             Language::Pl7St,
         );
-        let resolved = resolve(&table, &[&code]);
-        let shown: Vec<(&str, u32, Class)> = resolved[0]
+        let resolved = resolve(&table, &code);
+        let shown: Vec<(&str, u32, Class)> = resolved
             .objects
             .iter()
             .map(|it| (it.object.text.as_str(), it.object.footprint.start, it.object.class))
@@ -379,7 +379,7 @@ mod tests {
         assert_eq!(shown.iter().map(|it| (it.0, it.2)).collect::<Vec<_>>(), expected.map(|it| (it.0, it.2)));
         let other = facts("! %MW10 := %MW4;", Language::Pl7St);
         let same = |a: &str, b: &str| {
-            let one = resolved[0].objects.iter().find(|it| it.object.text == a);
+            let one = resolved.objects.iter().find(|it| it.object.text == a);
             let two = other.objects.iter().find(|it| it.object.text == b);
             one.zip(two).is_some_and(|(one, two)| one.is_same(two))
         };
@@ -387,7 +387,7 @@ mod tests {
         for (found, expected) in shown.iter().zip(expected).filter(|it| it.0.2 == Class::Memory) {
             assert_eq!(found.1, expected.1, "{}", found.0);
         }
-        assert!(matches!(resolve(&table, &[&facts("! %M1 := %M2;", Language::Pl7St)])[0], Cow::Borrowed(_)));
+        assert!(matches!(resolve(&table, &facts("! %M1 := %M2;", Language::Pl7St)), Cow::Borrowed(_)));
     }
 
     #[test]
@@ -402,8 +402,8 @@ mod tests {
             "RUNG L1:\nOPEN_CONTACT(Depart),H_LINK(8),COIL(Pompe);\nOPEN_CONTACT(Autre),H_LINK(8),COIL(B4);\nEND_RUNG\n",
             Language::Pl72Ld,
         );
-        let resolved = resolve(&table, &[&code]);
-        let shown: Vec<_> = resolved[0].objects.iter().map(|it| (it.object.text.as_str(), it.object.class)).collect();
+        let resolved = resolve(&table, &code);
+        let shown: Vec<_> = resolved.objects.iter().map(|it| (it.object.text.as_str(), it.object.class)).collect();
         let expected =
             [("Depart", Class::Input), ("Autre", Class::Symbol), ("Pompe", Class::Memory), ("B4", Class::Memory)];
         assert_eq!(shown, expected);
@@ -416,7 +416,7 @@ mod tests {
         let modes = |facts: &UnitFacts| -> Vec<Mode> {
             facts.uses.iter().filter(|it| it.mode.writes()).map(|it| it.mode).collect()
         };
-        assert_eq!(modes(&resolve(&table, &[&code])[0]), [Mode::Assign, Mode::Store, Mode::Set]);
+        assert_eq!(modes(&resolve(&table, &code)), [Mode::Assign, Mode::Store, Mode::Set]);
     }
 
     #[test]
@@ -424,7 +424,7 @@ mod tests {
         let table = table(VARIABLES);
         let text = "! IF %M9 THEN Pump := TRUE; ELSE %M0 := FALSE; END_IF; Four := 1; %M8 := %MW10 > 3;";
         let code = facts(text, Language::Pl7St);
-        let resolved = &resolve(&table, &[&code])[0];
+        let resolved = &resolve(&table, &code);
         let writes: Vec<u32> =
             resolved.uses.iter().filter(|it| it.conditional && it.mode.writes()).map(|it| it.group).collect();
         assert!(writes.len() == 2 && writes[0] == writes[1], "only one of the two is reached");

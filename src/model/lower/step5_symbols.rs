@@ -49,9 +49,9 @@ mod tests {
         let table = facts("\tE 0.0\tSTART\tTaster\n\tMW 10\tZAHL\t\n\tF 1.0\tMERKER\t\n", Language::Step5Symbols);
         let table = SymbolTable::new(Family::Step5, [&table]);
         let code = facts("U -START\n= -MERKER\nL -Zahl\nT -OTHER\n", Language::Step5(Mnemonics::German));
-        let resolved = resolve(&table, &[&code]);
+        let resolved = resolve(&table, &code);
         let area = |text: &str| {
-            let found = resolved[0].objects.iter().find(|it| it.object.text == text);
+            let found = resolved.objects.iter().find(|it| it.object.text == text);
             found.map(|it| (it.object.footprint.area.clone(), it.object.footprint.start))
         };
         assert_eq!(area("-START"), Some((Area::Inputs, 0)));
