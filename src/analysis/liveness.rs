@@ -154,14 +154,14 @@ impl<'a> Walk<'a> {
         match &object.footprint.area {
             Area::Indirect => self.areas.clear(),
             _ if !object.is_fixed() && object.class == Class::Symbol => self.areas.clear(),
-            area if !object.is_fixed() => {
+            // Where the parts of a symbol lie is not known, nor how large it is.
+            area if !object.is_fixed() || matches!(area, Area::Symbol(_)) => {
                 self.areas.remove(area);
             }
             area => {
                 // Which block is open, and whose instance this is, is not known.
-                match area {
-                    Area::OpenData | Area::OpenInstance => self.areas.retain(|it, _| !matches!(it, Area::Data(_))),
-                    _ => {}
+                if matches!(area, Area::OpenData | Area::OpenInstance) {
+                    self.areas.retain(|it, _| !matches!(it, Area::Data(_)));
                 }
                 if matches!(area, Area::OpenData | Area::Data(_)) {
                     self.areas.remove(&Area::OpenInstance);

@@ -15,6 +15,7 @@ use super::Site;
 use super::program::ProgramIndex;
 use crate::model::UnitModel;
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
+use crate::model::object::Type;
 use crate::model::unit::{Access, StatementKind};
 
 /// The statements of a unit, without places and names.
@@ -64,7 +65,8 @@ impl Outline {
             }
             let mut form =
                 Form { model, outline: &mut outline, hasher: FxHasher::default(), seen: FxHashMap::default() };
-            while labels.next_if(|it| it.statement <= at).map(|it| form.operand(&it.name, Role::Way)).is_some() {
+            while let Some(it) = labels.next_if(|it| it.statement <= at) {
+                form.operand(&it.name, Role::Way);
                 "label".hash(&mut form.hasher);
             }
             let anchor = form.statement(&statement.kind, &own);
@@ -96,7 +98,7 @@ impl Form<'_> {
         let object = self.model.object(id);
         // Which of several data blocks is open is not told by the address.
         ("object", object.ty, object.indexed, object.extracted).hash(&mut self.hasher);
-        let is_block = matches!(object.ty, crate::model::object::Type::Block);
+        let is_block = object.ty == Type::Block;
         is_block.then_some(object.class).hash(&mut self.hasher);
         self.operand((&object.footprint, object.ty), Role::Object);
     }
@@ -115,7 +117,9 @@ impl Form<'_> {
             StatementKind::Drive { access, pin, when, value } => {
                 pin.hash(&mut self.hasher);
                 self.expr(when);
-                value.inspect(|it| self.expr(*it));
+                if let Some(it) = value {
+                    self.expr(it);
+                }
                 self.access(access)
             }
             StatementKind::Call(at) => {

@@ -182,7 +182,7 @@ fn run(lines: &[Line], numbers: &mut Numbers) -> (Vec<Option<Visit>>, Option<usi
             Some(Value::Bit(it)) => *it,
             _ => br,
         };
-        let mut check = |mnemonic: &str, status: bool, rlo: &mut bool, nfc: &mut bool, or: &mut bool| {
+        let check = |mnemonic: &str, status: bool, rlo: &mut bool, nfc: &mut bool, or: &mut bool| {
             let status = status ^ mnemonic.trim_end_matches('(').ends_with('N');
             match &mnemonic[..1] {
                 "U" => {
