@@ -11,7 +11,9 @@ use super::chart::ChartFacts;
 use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
 use super::gaps;
+use super::liveness::{self, Lost};
 use super::ranges::demands::{self, Demanded};
+use super::repeats::Outline;
 use super::sequences::code::CodeFacts;
 use super::turns::{self, FactLoop};
 use crate::model::UnitModel;
@@ -164,6 +166,10 @@ pub struct UnitFacts {
     pub loops: Vec<FactLoop>,
     /// Of Siemens blocks: what sequences are recovered from.
     pub code: Option<Box<CodeFacts>>,
+    /// Writes whose value nothing in the unit reads.
+    pub lost: Vec<Lost>,
+    /// What its statements look like, for those who search for repetitions.
+    pub outline: Option<Box<Outline>>,
 }
 
 /// In what facts of a unit are others than before.
@@ -317,6 +323,8 @@ impl UnitFacts {
             demands: demands::of_unit(model),
             loops: turns::loops(model),
             code: CodeFacts::new(model),
+            lost: liveness::lost(model),
+            outline: None,
         }
     }
 

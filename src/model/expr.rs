@@ -356,6 +356,11 @@ impl Exprs {
         true
     }
 
+    /// What an expression is made of, one level down.
+    pub fn each_operand(&self, id: ExprId, each: impl FnMut(ExprId)) {
+        self.get(id).operands(each);
+    }
+
     /// Every expression that a condition is made of, itself too, each once.
     fn each_part(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
         let mut seen = FxHashSet::default();

@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::accumulators::Accumulator;
 use super::operands::{Operand, bare_text, constant_type, first_kind, is_indexed};
-use super::rlo::{Rlo, RloState};
+use super::rlo::{First, Rlo, RloState};
 use super::step5::block_text;
 use super::{Machine, mnemonic_text};
 use crate::model::entity::{BlockKind, BlockName};
@@ -163,8 +163,8 @@ impl Machine {
         let value = self.b.exprs().opaque();
         self.rlo = Rlo { state: RloState::AfterCall, value };
         self.br = self.b.exprs().opaque();
-        self.fresh = true;
-        self.or_base = None;
+        self.first = First::Yes;
+        self.or = None;
         self.string = None;
     }
 

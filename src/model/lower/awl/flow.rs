@@ -1,12 +1,13 @@
 //! Labels, jumps and the ends of blocks.
 
 use rowan::TextRange;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::accumulators::Accumulator;
 use super::operands::bare_text;
-use super::rlo::{Nest, Rlo, RloState};
+use super::relay::Relay;
+use super::rlo::{First, Nest, OrTerm, Rlo, RloState, meet_logic};
 use super::{Machine, mnemonic_text, op_of};
 use crate::model::entity::BlockName;
 use crate::model::expr::{ExprId, Exprs};
@@ -22,11 +23,12 @@ pub(super) const MOST_CARRIED: usize = 16;
 #[derive(Debug, Clone)]
 pub(super) struct Arrival {
     pub(super) rlo: Rlo,
-    pub(super) fresh: bool,
-    pub(super) or_base: Option<ExprId>,
+    pub(super) first: First,
+    pub(super) or: Option<OrTerm>,
     pub(super) nesting: Vec<Nest>,
     pub(super) accumulators: [Accumulator; 2],
     pub(super) br: ExprId,
+    pub(super) relay: Relay,
     pub(super) shared: Option<Option<BlockName>>,
 }
 
@@ -34,11 +36,12 @@ impl Machine {
     pub(super) fn arrival(&self) -> Arrival {
         Arrival {
             rlo: self.rlo,
-            fresh: self.fresh,
-            or_base: self.or_base,
+            first: self.first,
+            or: self.or,
             nesting: self.nesting.clone(),
             accumulators: self.accumulators.clone(),
             br: self.br,
+            relay: self.relay.clone(),
             shared: self.open.shared.clone(),
         }
     }
@@ -51,11 +54,16 @@ impl Machine {
         if let Some(arrival) = arrival {
             if reachable { self.meet(arrival) } else { self.become_arrival(arrival) }
         }
-        if self.back_targets.contains(text) {
+        if let Some(&jumps) = self.back_targets.labels.get(text) {
             self.string = None;
             let value = self.b.exprs().opaque();
             self.rlo = Rlo { state: RloState::Known, value };
-            self.or_base = None;
+            let or = self.or.take();
+            self.first = if or.is_some() { First::Either } else { self.first.meet(jumps) };
+            self.br = self.b.exprs().opaque();
+            if self.back_targets.relays || self.relay != Relay::default() {
+                self.relay = Relay::unknown(self.b.exprs().opaque());
+            }
             let entry = self.accumulators[0].value.filter(|_| is_entered);
             self.keep_accumulators();
             let turn = self.b.exprs().opaque();
@@ -68,32 +76,41 @@ impl Machine {
 
     pub(super) fn become_arrival(&mut self, arrival: Arrival) {
         self.rlo = arrival.rlo;
-        self.fresh = arrival.fresh;
-        self.or_base = arrival.or_base;
+        self.first = arrival.first;
+        self.or = arrival.or;
         self.nesting = arrival.nesting;
         self.accumulators = arrival.accumulators;
         self.br = arrival.br;
+        self.relay = arrival.relay;
         self.open.shared = arrival.shared;
         self.string = None;
     }
 
     pub(super) fn meet(&mut self, arrival: Arrival) {
-        let here = self.rlo_value();
-        let there = match arrival.or_base {
-            Some(base) => self.b.exprs().or(base, arrival.rlo.value),
-            None => arrival.rlo.value,
-        };
-        self.or_base = None;
-        if here != there {
-            self.rlo.value = self.b.exprs().opaque();
-        }
-        if self.rlo.state == RloState::Known {
-            self.rlo.state = arrival.rlo.state;
-        }
-        if self.fresh != arrival.fresh {
+        if self.first != arrival.first {
             self.string = None;
         }
-        self.fresh |= arrival.fresh;
+        let (here, there) = ((self.rlo, self.first, self.or), (arrival.rlo, arrival.first, arrival.or));
+        (self.rlo, self.first, self.or) = meet_logic(self.b.exprs(), here, there);
+        // Of parentheses that are not open on both ways nothing is known.
+        let is_same_depth = self.nesting.len() == arrival.nesting.len();
+        let mut others = arrival.nesting;
+        if others.len() > self.nesting.len() {
+            std::mem::swap(&mut others, &mut self.nesting);
+        }
+        for (nest, other) in self.nesting.iter_mut().zip(&others) {
+            let (here, there) = ((nest.rlo, nest.first, nest.or), (other.rlo, other.first, other.or));
+            (nest.rlo, nest.first, nest.or) = meet_logic(self.b.exprs(), here, there);
+            if nest.op != other.op {
+                nest.first = First::Either;
+            }
+        }
+        if !is_same_depth {
+            for nest in &mut self.nesting {
+                nest.first = First::Either;
+            }
+        }
+        self.relay.meet(&arrival.relay, self.b.exprs());
         for (accumulator, other) in self.accumulators.iter_mut().zip(&arrival.accumulators) {
             accumulator.meet(other);
             if accumulator.loads.len() > MOST_CARRIED {
@@ -115,6 +132,8 @@ impl Machine {
         let Some((text, at)) = label_operand(instr) else { return };
         if self.b.has_label(&text) || self.nesting.len() > MOST_CARRIED {
             self.keep_accumulators();
+        } else if !self.b.is_reachable() {
+            // Nothing goes from here to there.
         } else {
             match self.arrivals.remove(&text) {
                 Some(before) => {
@@ -198,25 +217,55 @@ impl Machine {
     }
 }
 
-/// Labels that a jump below them goes to.
-pub(super) fn back_targets(block: SyntaxNode<'_>, language: Language) -> FxHashSet<SmolStr> {
-    let mut labels: FxHashSet<SmolStr> = FxHashSet::default();
-    let mut back = FxHashSet::default();
-    for network in block.children().filter_map(ast::Network::cast) {
-        for instr in network.instrs() {
+/// What is known before the walk of the labels that a jump below them goes to.
+#[derive(Default)]
+pub(super) struct BackTargets {
+    /// Whether those jumps end the logic string, as the order of the text has it.
+    pub(super) labels: FxHashMap<SmolStr, First>,
+    /// Below a label, something acts on the master control relay.
+    pub(super) relays: bool,
+}
+
+impl BackTargets {
+    pub(super) fn of(block: SyntaxNode<'_>, language: Language) -> Self {
+        let mut found = Self::default();
+        let mut labels: FxHashSet<SmolStr> = FxHashSet::default();
+        let mut first = First::Yes;
+        for instr in block.children().filter_map(ast::Network::cast).flat_map(ast::Network::instrs) {
             if let Some((text, _)) = label(&instr) {
                 labels.insert(text);
             }
-            if !labels.is_empty()
-                && matches!(op_of(&instr, language), Some(Op::Jump(_) | Op::JumpList | Op::Loop))
+            if labels.is_empty() {
+                continue;
+            }
+            let Some(op) = op_of(&instr, language) else { continue };
+            first = first_behind(op).unwrap_or(first);
+            found.relays |= matches!(op, Op::McrOpen | Op::McrClose | Op::McrActivate | Op::McrDeactivate);
+            if matches!(op, Op::Jump(_) | Op::JumpList | Op::Loop)
                 && let Some((text, _)) = label_operand(&instr)
                 && labels.contains(&text)
             {
-                back.insert(text);
+                found.labels.entry(text).and_modify(|it| *it = it.meet(first)).or_insert(first);
             }
         }
+        found
     }
-    back
+}
+
+/// Whether the check behind an instruction is a first check; `None` where it is what it was before.
+fn first_behind(op: Op) -> Option<First> {
+    match op {
+        Op::And | Op::AndNot | Op::Or | Op::OrNot | Op::Xor | Op::XorNot | Op::Close => Some(First::No),
+        Op::EdgePositive | Op::EdgeNegative | Op::Compare(..) | Op::TestBit(_) => Some(First::No),
+        Op::AndOpen | Op::AndNotOpen | Op::OrOpen | Op::OrNotOpen | Op::XorOpen | Op::XorNotOpen => Some(First::Yes),
+        Op::Assign | Op::Set | Op::Reset | Op::SetRlo | Op::ClearRlo | Op::Timer(_) | Op::Enable => Some(First::Yes),
+        Op::CountUp | Op::CountDown | Op::Call | Op::CallUnconditional | Op::CallConditional => Some(First::Yes),
+        Op::McrOpen | Op::McrClose | Op::BlockEndConditional => Some(First::Yes),
+        Op::Jump(JumpIf::Rlo | JumpIf::NotRlo | JumpIf::RloSave | JumpIf::NotRloSave | JumpIf::Br | JumpIf::NotBr) => {
+            Some(First::Yes)
+        }
+        _ => None,
+    }
 }
 
 pub(super) fn label(instr: &ast::Instr) -> Option<(SmolStr, TextRange)> {

@@ -10,11 +10,12 @@ mod accumulators;
 mod calls;
 mod flow;
 mod operands;
+mod relay;
 mod rlo;
 mod step5;
 
 use rowan::TextRange;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use super::builder::{Builder, index};
@@ -31,9 +32,10 @@ use crate::target;
 
 use accumulators::{Accumulator, Load, comparison};
 use calls::{OpenBlock, instance_of, is_of_tia_portal};
-use flow::{Arrival, back_targets, label, label_operand};
+use flow::{Arrival, BackTargets, label, label_operand};
 use operands::{Operand, bare_text};
-use rlo::{LogicString, Nest, Rlo, RloState};
+use relay::Relay;
+use rlo::{First, LogicString, Nest, OrStage, OrTerm, Rlo, RloState};
 
 /// Lowers one block or listing.
 pub fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitModel {
@@ -42,17 +44,18 @@ pub fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitMo
         b: Builder::new(entity, language, heading, root.text_range().len()),
         language,
         rlo: Rlo { state: RloState::FromCaller, value: Exprs::TRUE },
-        fresh: true,
-        or_base: None,
+        first: First::Yes,
+        or: None,
         nesting: Vec::new(),
         string: None,
         accumulators: [Accumulator::entry(), Accumulator::entry()],
         loads: Vec::new(),
         br: Exprs::FALSE,
+        relay: Relay::default(),
         open: OpenBlock::default(),
         arrivals: FxHashMap::default(),
         counted: FxHashMap::default(),
-        back_targets: FxHashSet::default(),
+        back_targets: BackTargets::default(),
         operands: FxHashMap::default(),
         declared: FxHashMap::default(),
         temporary: Layout::default(),
@@ -67,6 +70,7 @@ pub fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitMo
         on_words: false,
     };
     machine.br = machine.b.exprs().opaque();
+    machine.rlo.value = machine.b.exprs().opaque();
     for child in root.children() {
         match child.kind() {
             SyntaxKind::Block | SyntaxKind::Listing => machine.block(child),
@@ -80,20 +84,21 @@ struct Machine {
     b: Builder,
     language: Language,
     rlo: Rlo,
-    /// The next check is a first check.
-    fresh: bool,
+    /// Whether the next check is a first check.
+    first: First,
     /// AND terms before an `O` without operand.
-    or_base: Option<ExprId>,
+    or: Option<OrTerm>,
     nesting: Vec<Nest>,
     string: Option<LogicString>,
     accumulators: [Accumulator; 2],
     loads: Vec<Load>,
     br: ExprId,
+    relay: Relay,
     open: OpenBlock,
     arrivals: FxHashMap<SmolStr, Arrival>,
     /// Of labels that jumps lead back to: what accumulator 1 holds when control comes from above, and on each turn.
     counted: FxHashMap<SmolStr, (ExprId, ExprId)>,
-    back_targets: FxHashSet<SmolStr>,
+    back_targets: BackTargets,
     operands: FxHashMap<SmolStr, Operand>,
     /// Names that the block declares, in lower case.
     declared: FxHashMap<SmolStr, Option<Elementary>>,
@@ -126,9 +131,8 @@ impl Machine {
         for init in block.children().filter_map(ast::DataInit::cast) {
             self.initial_value(init.value());
         }
-        let back_targets = back_targets(block, self.language);
-        self.b.set_back_targets(back_targets.clone());
-        self.back_targets = back_targets;
+        self.back_targets = BackTargets::of(block, self.language);
+        self.b.set_back_targets(self.back_targets.labels.keys().cloned().collect());
         for network in block.children().filter(|it| it.kind() == SyntaxKind::Network) {
             self.b.next_network();
             for element in network.children_with_tokens() {
@@ -195,8 +199,9 @@ impl Machine {
         self.string = None;
         let value = self.b.exprs().opaque();
         self.rlo = Rlo { state: RloState::Known, value };
-        self.fresh = true;
-        self.or_base = None;
+        self.first = First::Yes;
+        self.or = None;
+        self.br = self.b.exprs().opaque();
         self.keep_accumulators();
         self.accumulators = [Accumulator::unknown(), Accumulator::unknown()];
         self.open.shared = Some(None);
@@ -239,31 +244,37 @@ impl Machine {
             Op::And | Op::AndNot | Op::OrNot | Op::Xor | Op::XorNot => self.bit_check(op, instr, range),
             Op::Or if instr.operand().is_some() => self.bit_check(op, instr, range),
             Op::Or => {
+                // Where the next check is a first one, there is no term yet.
                 let base = self.rlo_value();
-                self.or_base = Some(base);
-                self.rlo.value = Exprs::TRUE;
+                if self.first == First::No {
+                    self.rlo.value = base;
+                    self.or = Some(OrTerm { base, stage: OrStage::Open });
+                }
             }
             Op::AndOpen | Op::AndNotOpen | Op::OrOpen | Op::OrNotOpen | Op::XorOpen | Op::XorNotOpen => {
+                let value = self.rlo_value();
                 let nest = Nest {
                     op,
                     range,
                     rlo: self.rlo,
-                    fresh: self.fresh,
-                    or_base: self.or_base.take(),
+                    first: self.first,
+                    or: self.or.take(),
                     string: self.string.take(),
                 };
                 self.nesting.push(nest);
+                self.rlo.value = value;
                 let depth = index(self.nesting.len());
                 if !self.is_step5() && depth > target::step7::PARENTHESIS_DEPTH.value {
                     self.b.oddity(OddityKind::ParenthesisDepth(depth), range, "(");
                 }
-                self.fresh = true;
+                self.first = First::Yes;
             }
             Op::Close => self.close(range),
             Op::Assign => {
                 let rlo = self.use_rlo(range, &mnemonic_text(instr));
                 if let Some((object, at)) = self.object_operand(instr) {
-                    self.b.assign(object, false, rlo, at, range);
+                    let value = self.under_relay(rlo);
+                    self.b.assign(object, false, value, at, range);
                     self.note_write(object);
                 }
                 self.limit();
@@ -271,23 +282,25 @@ impl Machine {
             Op::Set | Op::Reset => self.set_or_reset(op, instr, range),
             Op::NegateRlo => {
                 let rlo = self.rlo_value();
-                self.or_base = None;
-                let value = self.b.exprs().not(rlo);
-                self.rlo.value = value;
+                self.rlo.value = self.b.exprs().not(rlo);
+                if let Some(or) = self.or.as_mut().filter(|it| it.stage == OrStage::Term) {
+                    or.stage = OrStage::Negated;
+                }
             }
             Op::SetRlo | Op::ClearRlo => {
                 self.discard(range);
                 self.rlo = Rlo { state: RloState::Known, value: Exprs::bool(op == Op::SetRlo) };
-                self.fresh = true;
-                self.or_base = None;
+                self.first = First::Yes;
+                self.or = None;
             }
             Op::SaveRlo => {
-                // SAVE after a call keeps what the called block answered: its use is the point.
+                // SAVE after a call keeps what the called block answered: its use is the point. It touches nothing but BR:
+                // the logic string goes on.
                 self.br = self.rlo_value();
-                self.limit();
+                self.string = None;
             }
             Op::EdgePositive | Op::EdgeNegative => {
-                let was_fresh = self.fresh;
+                let was_first = self.first != First::No;
                 let of = self.use_rlo(range, &mnemonic_text(instr));
                 let value = self.b.exprs().opaque();
                 if let Some((memory, at)) = self.object_operand(instr) {
@@ -297,8 +310,8 @@ impl Machine {
                     let rising = op == Op::EdgePositive;
                     self.b.model.pulses.push(Pulse { value, of, memory, rising, statement, path });
                 }
-                self.or_base = None;
-                if was_fresh {
+                self.or = None;
+                if was_first {
                     self.string = None;
                 }
                 self.overwrite(value, range);
@@ -312,6 +325,7 @@ impl Machine {
                     let data = self.accumulators[0].data.as_ref();
                     let misplaced = data.and_then(|it| it.misplaced(self.b.model.object(object), declared));
                     self.note_width(misplaced, range, instr);
+                    let value = self.stored_under_relay(value);
                     self.b.store(object, value, at, range);
                     self.note_write(object);
                 }
@@ -341,8 +355,8 @@ impl Machine {
                 let (left, right) = self.two_operands(range, instr);
                 let value = self.b.exprs().compare(comparison(relation), left, right);
                 self.discard(range);
-                self.or_base = None;
-                self.fresh = true;
+                self.or = None;
+                self.first = First::Yes;
                 self.overwrite(value, range);
             }
             Op::Arithmetic(op, ty) => {
@@ -478,8 +492,9 @@ impl Machine {
                 self.b.model.opens_instance = true;
             }
             Op::McrOpen => {
-                self.use_rlo(range, "MCR(");
+                let rlo = self.use_rlo(range, "MCR(");
                 self.limit();
+                self.open_relay(rlo);
                 self.b.statement(StatementKind::Other, range);
             }
             Op::TestBit(_)
@@ -491,7 +506,15 @@ impl Machine {
             | Op::Control
             | Op::LoadRegister
             | Op::TransferRegister => self.step5_instruction(op, instr, range),
-            Op::McrClose | Op::McrActivate | Op::McrDeactivate => {}
+            Op::McrClose => {
+                // The RLO stays readable; the next check is a first one.
+                self.rlo.value = self.rlo_value();
+                self.or = None;
+                self.first = First::Yes;
+                self.relay.close();
+            }
+            Op::McrActivate => self.relay.active = Exprs::TRUE,
+            Op::McrDeactivate => self.relay.active = Exprs::FALSE,
             Op::Jump(condition) => self.jump_instruction(condition, instr, range),
             Op::JumpList => {
                 self.use_loads(0);
@@ -547,5 +570,7 @@ fn instruction_range(instr: &ast::Instr) -> Option<TextRange> {
     Some(start.cover(mnemonic).cover(end.unwrap_or(start)))
 }
 
+#[cfg(test)]
+mod testing;
 #[cfg(test)]
 mod tests;

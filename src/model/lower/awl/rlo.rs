@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::operands::Operand;
 use super::{Machine, mnemonic_text};
-use crate::model::expr::ExprId;
+use crate::model::expr::{ExprId, Exprs};
 use crate::model::object::{Class, Type};
 use crate::model::unit::{OddityKind, Pin};
 use crate::syntax::AstNode as _;
@@ -27,6 +27,39 @@ pub(super) struct Rlo {
     pub(super) value: ExprId,
 }
 
+/// Whether a check is a first check, which overwrites the RLO.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum First {
+    Yes,
+    No,
+    /// On some ways here, and not on others: what a check makes of the RLO is not known.
+    Either,
+}
+
+impl First {
+    pub(super) fn meet(self, other: Self) -> Self {
+        if self == other { self } else { Self::Either }
+    }
+}
+
+/// What an `O` without operand has put aside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct OrTerm {
+    /// The terms before it.
+    pub(super) base: ExprId,
+    pub(super) stage: OrStage,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OrStage {
+    /// No check stands behind it yet: the RLO is what it was.
+    Open,
+    /// The RLO is the base or the term that [`Rlo`] holds.
+    Term,
+    /// `NOT` made the RLO what [`Rlo`] holds; the base is added again with the next AND check.
+    Negated,
+}
+
 /// A logic string whose result nothing has used yet.
 #[derive(Debug, Clone)]
 pub(super) struct LogicString {
@@ -41,20 +74,38 @@ pub(super) struct Nest {
     pub(super) op: Op,
     pub(super) range: TextRange,
     pub(super) rlo: Rlo,
-    pub(super) fresh: bool,
-    pub(super) or_base: Option<ExprId>,
+    pub(super) first: First,
+    pub(super) or: Option<OrTerm>,
     pub(super) string: Option<LogicString>,
+}
+
+type Logic = (Rlo, First, Option<OrTerm>);
+
+/// What is known of the RLO where two ways meet.
+pub(super) fn meet_logic(exprs: &mut Exprs, a: Logic, b: Logic) -> Logic {
+    let state = if a.0.state == RloState::Known { b.0.state } else { a.0.state };
+    let first = a.1.meet(b.1);
+    if (a.0.value, a.2) == (b.0.value, b.2) {
+        return (Rlo { state, value: a.0.value }, first, a.2);
+    }
+    let mut value = |(rlo, _, or): Logic| match or {
+        Some(OrTerm { base, stage: OrStage::Term }) => exprs.or(base, rlo.value),
+        _ => rlo.value,
+    };
+    let (here, there) = (value(a), value(b));
+    let value = if here == there { here } else { exprs.opaque() };
+    // What the next AND check adds is not the same on both ways.
+    let first = if a.2.or(b.2).is_some() { First::Either } else { first };
+    (Rlo { state, value }, first, None)
 }
 
 impl Machine {
     /// The value that an instruction which uses the RLO sees.
     pub(super) fn rlo_value(&mut self) -> ExprId {
-        match self.or_base {
-            Some(base) => {
-                let term = self.rlo.value;
-                self.b.exprs().or(base, term)
-            }
-            None => self.rlo.value,
+        let value = self.rlo.value;
+        match self.or {
+            Some(OrTerm { base, stage: OrStage::Term }) => self.b.exprs().or(base, value),
+            _ => value,
         }
     }
 
@@ -62,14 +113,14 @@ impl Machine {
     pub(super) fn limit(&mut self) {
         let value = self.rlo_value();
         self.rlo.value = value;
-        self.or_base = None;
-        self.fresh = true;
+        self.or = None;
+        self.first = First::Yes;
         self.string = None;
     }
 
     /// An instruction acts on the RLO: reports one that nothing in the block computed.
     pub(super) fn use_rlo(&mut self, range: TextRange, text: &str) -> ExprId {
-        if self.fresh && self.b.is_reachable() {
+        if self.first != First::No && self.b.is_reachable() {
             let kind = match self.rlo.state {
                 RloState::Known => None,
                 RloState::FromCaller => Some(OddityKind::RloFromCaller),
@@ -88,7 +139,7 @@ impl Machine {
     /// A new value overwrites the RLO, or the block ends: a string that nothing used is lost.
     pub(super) fn discard(&mut self, by: TextRange) {
         let Some(string) = self.string.take() else { return };
-        if self.fresh || !self.b.is_reachable() {
+        if self.first != First::No || !self.b.is_reachable() {
             return;
         }
         match string.ignoring {
@@ -107,37 +158,43 @@ impl Machine {
     pub(super) fn check(&mut self, op: Op, value: ExprId, range: TextRange) {
         let negated = matches!(op, Op::AndNot | Op::OrNot | Op::XorNot);
         let value = if negated { self.b.exprs().not(value) } else { value };
-        let combined = if self.fresh {
-            value
-        } else {
-            let left = self.rlo.value;
-            match op {
-                Op::Or | Op::OrNot => {
-                    let left = self.rlo_value();
-                    self.or_base = None;
-                    self.b.exprs().or(left, value)
+        let left = self.rlo.value;
+        let combined = match (self.first, op) {
+            (First::Yes, _) => value,
+            (First::Either, _) => self.b.exprs().opaque(),
+            (First::No, Op::Or | Op::OrNot | Op::Xor | Op::XorNot) => {
+                let left = match self.or {
+                    // Where the terms before are 0, this is a first check.
+                    Some(OrTerm { base, stage: OrStage::Open }) => self.b.exprs().and(base, left),
+                    _ => self.rlo_value(),
+                };
+                match op {
+                    Op::Or | Op::OrNot => self.b.exprs().or(left, value),
+                    _ => self.b.exprs().xor(left, value),
                 }
-                Op::Xor | Op::XorNot => {
-                    let left = self.rlo_value();
-                    self.or_base = None;
-                    self.b.exprs().xor(left, value)
-                }
-                _ => self.b.exprs().and(left, value),
             }
+            (First::No, _) => match &mut self.or {
+                Some(or) => {
+                    let is_first = or.stage == OrStage::Open;
+                    or.stage = OrStage::Term;
+                    if is_first { value } else { self.b.exprs().and(left, value) }
+                }
+                None => self.b.exprs().and(left, value),
+            },
         };
-        if self.fresh {
-            self.or_base = None;
+        if self.first != First::No || matches!(op, Op::Or | Op::OrNot | Op::Xor | Op::XorNot) {
+            self.or = None;
         }
         self.overwrite(combined, range);
     }
 
     pub(super) fn overwrite(&mut self, value: ExprId, range: TextRange) {
         match &mut self.string {
-            Some(string) if !self.fresh => string.range = string.range.cover(range),
+            Some(string) if self.first == First::No => string.range = string.range.cover(range),
             _ => self.string = Some(LogicString { range, ignoring: None }),
         }
         self.rlo = Rlo { state: RloState::Known, value };
-        self.fresh = false;
+        self.first = First::No;
     }
 
     /// An instruction that neither uses nor changes the RLO stands here.
@@ -184,8 +241,8 @@ impl Machine {
             _ => Op::And,
         };
         self.rlo = nest.rlo;
-        self.fresh = nest.fresh;
-        self.or_base = nest.or_base;
+        self.first = nest.first;
+        self.or = nest.or;
         self.string = nest.string;
         self.check(op, inner, nest.range.cover(range));
     }
@@ -201,9 +258,15 @@ impl Machine {
                     let preset = self.accumulator(0);
                     self.b.drive(object, Pin::Preset, rlo, Some(preset), at, range);
                 }
-                (Op::Set, false) => self.b.set(object, rlo, at, range),
+                (Op::Set, false) => {
+                    let when = self.under_relay(rlo);
+                    self.b.set(object, when, at, range);
+                }
                 (_, true) => self.b.drive(object, Pin::Reset, rlo, None, at, range),
-                (_, false) => self.b.reset(object, rlo, at, range),
+                (_, false) => {
+                    let when = self.under_relay(rlo);
+                    self.b.reset(object, when, at, range);
+                }
             }
             self.note_write(object);
             // A symbol may be a counter, which takes its preset from the accumulator.

@@ -8,6 +8,7 @@ use rowan::TextRange;
 use smol_str::{SmolStr, StrExt as _};
 
 use super::operands::{Operand, bare_text};
+use super::rlo::First;
 use super::{Machine, mnemonic_text};
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::layout::{DataType, Elementary, Field};
@@ -131,8 +132,8 @@ impl Machine {
                 let bit: ExprId = bit.unwrap_or_else(|| self.b.exprs().opaque());
                 let value = if wanted { bit } else { self.b.exprs().not(bit) };
                 self.discard(range);
-                self.or_base = None;
-                self.fresh = true;
+                self.or = None;
+                self.first = First::Yes;
                 self.overwrite(value, range);
             }
             Op::SetAlways | Op::ResetAlways => {

@@ -221,3 +221,180 @@ fn listings_end_where_the_author_stopped() {
     let model = model("U E0.0\nL MW0\n");
     assert_eq!(oddities(&model), [""; 0]);
 }
+
+/// Conditions of sets and resets, written out.
+fn whens(code: &str) -> Vec<String> {
+    let model = block(code);
+    let of = |it: &StatementKind| match it {
+        StatementKind::Set { when, .. } | StatementKind::Reset { when, .. } => Some(show(&model, *when)),
+        _ => None,
+    };
+    model.statements.iter().filter_map(|it| of(&it.kind)).collect()
+}
+
+/// Path of the last statement that assigns, sets or resets, written out.
+fn last_path(code: &str) -> String {
+    let model = block(code);
+    let acts = |it: &&crate::model::unit::Statement| {
+        matches!(it.kind, StatementKind::Assign { .. } | StatementKind::Set { .. } | StatementKind::Reset { .. })
+    };
+    show(&model, model.statements.iter().rev().find(acts).unwrap().path)
+}
+
+#[test]
+fn rlo_where_jumps_arrive() {
+    // The same on both ways: an unconditional jump takes its RLO along.
+    assert_eq!(values("U E0.0\nSPA W1\nW1: = A4.0"), ["E0.0"]);
+    assert_eq!(values("U E0.0\nSPA W1\nU E0.1\nW1: = A4.0"), ["E0.0"], "what no way comes through does not count");
+    // A conditional jump leaves 1, taken or not.
+    assert_eq!(values("U E0.0\nSPB W1\nW1: = A4.0"), ["true"]);
+    assert_eq!(names("U E0.0\nSPB W1\nW1: = A4.0"), [""; 0]);
+    // Different RLOs: which is not known, but it is one that the block computed.
+    let code = "U E0.0\nSPB W1\nU E0.1\nW1: = A4.0";
+    assert_eq!((values(code), names(code)), (vec!["?".to_owned()], vec![]));
+    // The next check is a first check on one way only: the RLO goes into it on the other.
+    assert_eq!(values("U E0.0\nSPB W1\nU E0.1\nW1: U E0.2\n= A4.0"), ["?"]);
+    assert_eq!(values("U E0.0\nSPB W1\nU E0.1\n= A4.1\nW1: U E0.2\n= A4.0"), ["E0.1", "E0.2"]);
+    // On one way nothing of the block set it.
+    assert_eq!(names("U E0.0\nSPB W1\nSPA W2\nW1: SET\n= A4.0\nW2: NOP 0"), [""; 0]);
+    assert_eq!(names("L MW0\nSPZ W1\nU E0.0\nW1: = A4.0"), ["RloFromCaller"]);
+    assert_eq!(names("L MW0\nSPZ W1\nCLR\nW1: U E0.0\n= A4.0"), [""; 0]);
+}
+
+#[test]
+fn rlo_at_jumps_back() {
+    // What comes round is not what came down.
+    assert_eq!(values("SET\nW1: = A4.0\nU E0.0\nSPA W1"), ["?"]);
+    // The loop ends its logic string before it jumps: the first check in it is one.
+    assert_eq!(values("L 5\nW1: T MB0\nU E0.0\n= A4.0\nL MB0\nLOOP W1"), ["E0.0"]);
+    // It does not: the check at the label goes on with the string on one of the ways.
+    assert_eq!(values("W1: U E0.0\n= A4.0\nU E0.1\nSPA W1"), ["?"]);
+}
+
+#[test]
+fn rlo_saved_negated_and_forced() {
+    assert_eq!(values("U E0.0\nSAVE\nU E0.1\n= A4.0\nU BIE\n= A4.1"), ["(E0.0 & E0.1)", "E0.0"], "SAVE ends no string");
+    assert_eq!(names("U E0.0\nSAVE"), [""; 0]);
+    assert_eq!(values("U E0.0\nSPBNB W1\nW1: U BIE\n= A4.0"), ["E0.0"]);
+    assert_eq!(values("U E0.0\nSPBNB W1\nSET\nSAVE\nW1: U BIE\n= A4.0"), ["?"]);
+    assert_eq!(values("U E0.0\nSET\nU E0.1\n= A4.0\nCLR\n= A4.1\nNOT\n= A4.2"), ["E0.1", "false", "true"]);
+    // NOT of two terms, and one more AND check: the terms before the `O` are added again.
+    assert_eq!(values("U E0.0\nO\nU E0.1\nNOT\n= A4.0"), ["!(E0.0 | E0.1)"]);
+    assert_eq!(values("U E0.0\nO\nU E0.1\nNOT\nU E0.2\n= A4.0"), ["(E0.0 | (!(E0.0 | E0.1) & E0.2))"]);
+    assert_eq!(values("U E0.0\nO\nO E0.1\n= A4.0"), ["(E0.0 | E0.1)"]);
+    assert_eq!(values("U E0.0\nO\n= A4.0"), ["E0.0"]);
+}
+
+#[test]
+fn rlo_in_parentheses() {
+    let code = "U E0.0\nU(\nU E0.1\nO(\nU E0.2\nON E0.3\n)\n)\n= A4.0";
+    assert_eq!(values(code), ["(E0.0 & (E0.1 | (E0.2 | !E0.3)))"]);
+    // Power flows in a parenthesis before anything is checked in it.
+    assert_eq!(values("U E0.0\nO\nU E0.1\nU(\n= A4.0\nU E0.2\n)\n= A4.1"), ["(E0.0 | E0.1)", "(E0.0 | (E0.1 & E0.2))"]);
+    // A label within: both ways have the same parenthesis open.
+    let code = "U E0.0\nU(\nU E0.1\nSPB W1\nU E0.2\n= A4.1\nW1: U E0.3\n)\n= A4.0";
+    assert_eq!(values(code), ["E0.2", "(E0.0 & E0.3)"]);
+    // Other terms stand before the parenthesis on the other way.
+    let code = "U E0.0\nU(\nU E0.1\nSPB W1\n)\n= A4.0\nU E0.2\nU(\nW1: U E0.3\n)\n= A4.1";
+    assert_eq!(values(code).last().unwrap(), "(? & E0.3)");
+    // None stands open on the other way.
+    assert_eq!(values("U E0.0\nSPB W1\nU E0.1\nU(\nU E0.2\nW1: U E0.3\n)\n= A4.0"), ["?"]);
+}
+
+#[test]
+fn writes_under_the_master_control_relay() {
+    let code = "MCRA\nU E0.0\nMCR(\nU E0.1\n= A4.0\nU E0.2\nS A4.1\n)MCR\nU E0.3\n= A4.2\nMCRD";
+    assert_eq!(values(code), ["(E0.1 & E0.0)", "E0.3"]);
+    assert_eq!(whens(code), ["(E0.2 & E0.0)"]);
+    // A zone in a zone; and zones that are not activated, or no longer.
+    let code = "MCRA\nU E0.0\nMCR(\nU E0.1\nMCR(\nU E0.2\n= A4.0\n)MCR\nU E0.3\n= A4.1\n)MCR\nMCRD";
+    assert_eq!(values(code), ["(E0.2 & (E0.0 & E0.1))", "(E0.3 & E0.0)"]);
+    assert_eq!(values("U E0.0\nMCR(\nU E0.1\n= A4.0\n)MCR"), ["E0.1"]);
+    assert_eq!(
+        values("MCRA\nU E0.0\nMCR(\nMCRD\nU E0.1\n= A4.0\nMCRA\nU E0.2\n= A4.1\n)MCR"),
+        ["E0.1", "(E0.2 & E0.0)"]
+    );
+    // Words become 0.
+    let stored = |code: &str| {
+        let model = block(code);
+        let of = |it: &StatementKind| match it {
+            StatementKind::Store { value, .. } => Some(show(&model, *value)),
+            _ => None,
+        };
+        model.statements.iter().filter_map(|it| of(&it.kind)).collect::<Vec<_>>()
+    };
+    assert_eq!(stored("MCRA\nU E0.0\nMCR(\nL 5\nT MW0\n)MCR\nL 5\nT MW2"), ["?", "5"]);
+    assert_eq!(stored("MCRA\nCLR\nMCR(\nL 5\nT MW0\n)MCR"), ["0"]);
+    // Jumped over on one way: whether the zone is open is not known where the ways meet.
+    assert_eq!(values("MCRA\nU E0.0\nSPB W1\nU E0.1\nMCR(\nW1: U E0.2\n= A4.0")[0], "(E0.2 & ?)");
+}
+
+#[test]
+fn block_calls_and_ends() {
+    for call in ["UC FC 2", "CALL FC 2", "CC FC 2"] {
+        let code = format!("U E0.0\n{call}\n= A4.0");
+        let expected: &[&str] =
+            if call == "CC FC 2" { &["RloAfterCall"] } else { &["RloAfterCall", "UnconditionalAfterTest"] };
+        assert_eq!(names(&code), expected, "{call}");
+    }
+    assert_eq!(names("U E0.0\nCC FC 3\nUC FC 2\nU E0.1\n= A4.0"), [""; 0]);
+    assert_eq!(names("U E0.0\nCC FC 3\nCC FC 2"), ["RloAfterCall"]);
+    assert_eq!(names("U E0.0\n= A4.0\nUC FC 2\nSAVE\nU BIE\n= A4.1"), [""; 0], "what the block answers");
+    // A conditional end that is not taken leaves 1.
+    assert_eq!(values("U E0.0\nBEB\n= A4.0"), ["true"]);
+    assert_eq!(last_path("U E0.0\nBEB\nU E0.1\n= A4.0"), "!E0.0");
+    assert_eq!(last_path("U E0.0\nSPB W1\nBEA\nW1: U E0.1\n= A4.0"), "E0.0");
+    assert_eq!(names("U E0.0\nBEA"), ["RloUnused"]);
+}
+
+#[test]
+fn residue_of_compiled_ladder() {
+    // A move under a condition, then a timer and a counter with their unused pins, then a branch through local data.
+    let code = "U( \nU E0.0\nUN E0.1\nSPBNB _001\nL MW10\nT MW12\nSET\nSAVE\nCLR\n_001: U BIE\n)\nU E0.2\n= A4.0\n\
+                U E0.3\nL S5T#5S\nSE T1\nNOP 0\nNOP 0\nNOP 0\nU T1\n= A4.1\nU E0.4\nZV Z1\nBLD 101\nNOP 0\nNOP 0\nNOP 0\n\
+                NOP 0\nU Z1\n= A4.2\nU E0.5\n= L 20.0\nU L 20.0\nBLD 102\n= A4.3\nU L 20.0\nU E0.6\n= A4.4";
+    assert_eq!(names(code), [""; 0]);
+    let model = block(code);
+    assert!(model.unreachable.is_empty(), "{:?}", model.unreachable);
+    // BIE is 1 where the move ran, and the RLO 0 that `SPBNB` saved where it did not: the parenthesis is not known by form.
+    assert_eq!(values(code)[1..], ["T1", "Z1", "E0.5", "L20.0", "(L20.0 & E0.6)"]);
+    let moved = model.statements.iter().find(|it| matches!(it.kind, StatementKind::Store { .. })).unwrap();
+    assert_eq!(show(&model, moved.path), "(E0.0 & !E0.1)");
+    // Only the move, as most boxes are compiled.
+    let code = "U E0.0\nSPBNB _001\nL 5\nT MW12\n_001: NOP 0\nU E0.1\n= A4.0";
+    assert_eq!((names(code), values(code)), (vec![], vec!["E0.1".to_owned()]));
+    assert_eq!(last_path(code), "true");
+}
+
+#[test]
+fn jump_lists_and_loops() {
+    let code =
+        "L MB0\nSPL E3\nSPA E1\nSPA E2\nE3: SPA EE\nE1: U E0.0\n= A4.0\nSPA EE\nE2: U E0.1\n= A4.1\nEE: U E0.2\n= A4.2";
+    assert_eq!((names(code), values(code)), (vec![], vec!["E0.0".to_owned(), "E0.1".to_owned(), "E0.2".to_owned()]));
+    let code = "L 5\nW1: T MW0\nL MW2\nL MW4\n+I\nT MW2\nL MW0\nLOOP W1\nU E0.0\n= A4.0";
+    assert_eq!((names(code), last_path(code)), (vec![], "!?".to_owned()));
+}
+
+#[test]
+fn step5_jumps_and_ends() {
+    let of = |code: &str| {
+        let text = format!("PB 1\n{code}\n:BE\n");
+        let parse = crate::syntax::step5::parse(&text, Mnemonics::German);
+        assert_eq!(parse.errors(), [], "{text}");
+        lower(parse.syntax(), Entity::Listing, Language::Step5(Mnemonics::German))
+    };
+    let model = of(
+        ":U E 0.0\n:SPB =M001\n:U E 0.1\n:= A 4.0\nM001 :U E 0.2\n:= A 4.1\n:***\n:U E 0.3\n:BEB\n:U E 0.4\n:= A 4.2",
+    );
+    assert!(model.oddities.is_empty() && model.unreachable.is_empty(), "{:?}", model.oddities);
+    let acts = model.statements.iter().filter(|it| matches!(it.kind, StatementKind::Assign { .. }));
+    let paths: Vec<String> = acts.map(|it| show(&model, it.path)).collect();
+    assert_eq!(paths, ["!E0.0", "true", "!E0.3"]);
+    // A conditional jump leaves 1.
+    let model = of(":U E 0.0\n:SPB =M001\nM001 := A 4.1");
+    let taken = model.statements.iter().find_map(|it| match it.kind {
+        StatementKind::Assign { value, .. } => Some(show(&model, value)),
+        _ => None,
+    });
+    assert_eq!((taken.as_deref(), oddities(&model)), (Some("true"), vec![]));
+}

@@ -1,0 +1,374 @@
+//! Values that nothing can read: a write that others surely override before anything looks at the object.
+//!
+//! Statements are walked once, in the order of their execution. A write waits until something reads the object, or any part
+//! of its memory, under a condition that can hold together with the write's own; until code runs that may read anything (a
+//! call, a place computed at run time); or until writes of all of it, under conditions of which one surely holds, make it
+//! lost. A loop is no obstacle when the write and those that override it stand in its body together: the value does not
+//! outlive the pass.
+//!
+//! What is written has an effect of its own in some areas (the periphery, system objects, blocks), which are left out.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
+
+use super::Site;
+use super::conditions::{Space, Verdict};
+use super::program::{GlobalUse, ObjectUses, ProgramIndex};
+use crate::model::UnitModel;
+use crate::model::dfb::Role;
+use crate::model::expr::{Expr, ExprId, Exprs};
+use crate::model::object::{Area, Class, Footprint, Object, Type};
+use crate::model::unit::{Access, Mode, Statement, StatementKind};
+use crate::syntax::Language;
+
+/// A write whose value nothing reads. It holds no position, so that it may leave the unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Lost {
+    /// Anchor of the write.
+    pub write: u32,
+    /// Anchors of the writes that override it, in the order of execution; the last one settles it.
+    pub by: Box<[u32]>,
+    /// Whether the object is one of the unit alone.
+    pub local: bool,
+}
+
+/// So many writes wait for one stretch of memory; the oldest is let go. So many writes together may override one.
+const MOST_WAITING: usize = 16;
+
+/// Conditions that are larger are not compared.
+const LONGEST: usize = 128;
+
+/// Bits of an area that one list of waiting writes covers, and the lists that one object may have.
+const GRANULE: u32 = 32;
+const WIDEST: u32 = 64;
+
+/// The writes of a unit that are lost. A unit that is not understood has none.
+pub fn lost(model: &UnitModel) -> Vec<Lost> {
+    if model.has_gaps || model.language == Language::Pl7Xref {
+        return Vec::new();
+    }
+    let mut walk =
+        Walk { model, space: Space::of(model), waiting: Vec::new(), areas: FxHashMap::default(), found: Vec::new() };
+    let mut part = None;
+    let mut accesses = model.accesses.iter().peekable();
+    for (at, statement) in (0..).zip(&model.statements) {
+        while let Some(access) = accesses.next_if(|it| it.statement <= at) {
+            // Between the pieces of code of a chart, those of other pages may run.
+            let chart = model.chart.as_deref();
+            let here = chart.and_then(|it| it.action_at(access.anchor)).map(|it| it.anchors.start);
+            if chart.is_some() && (here != part || here.is_none()) {
+                walk.areas.clear();
+                part = here;
+            }
+            walk.access(access, statement);
+        }
+        if acts_on_anything(model, statement) {
+            walk.areas.clear();
+        }
+    }
+    walk.found
+}
+
+/// Whether code runs that may read any object, or control may go where paths do not tell.
+fn acts_on_anything(model: &UnitModel, statement: &Statement) -> bool {
+    match statement.kind {
+        StatementKind::Call(_) | StatementKind::Other | StatementKind::Exit | StatementKind::Halt => true,
+        // A text block sends the words that it was given, a drum drives bits.
+        StatementKind::Drive { access, .. } => {
+            model.accesses.get(access as usize).is_none_or(|it| model.object(it.object).class == Class::Block)
+        }
+        _ => false,
+    }
+}
+
+/// A write that nothing has read yet.
+struct Waiting<'a> {
+    access: &'a Access,
+    value: ExprId,
+    in_loop: Option<u32>,
+    /// Conditions under which others have overridden it, and their anchors.
+    overridden: Vec<[ExprId; 2]>,
+    by: Vec<u32>,
+    /// Neither read nor lost.
+    open: bool,
+}
+
+struct Walk<'a> {
+    model: &'a UnitModel,
+    space: Space<'a>,
+    waiting: Vec<Waiting<'a>>,
+    /// By granule, indices of what waits. A list may hold some that wait no more.
+    areas: FxHashMap<&'a Area, FxHashMap<u32, Vec<u32>>>,
+    found: Vec<Lost>,
+}
+
+impl<'a> Walk<'a> {
+    fn access(&mut self, access: &'a Access, statement: &'a Statement) {
+        let object = self.model.object(access.object);
+        if access.path == Exprs::FALSE {
+            return;
+        }
+        let (value, when) = match statement.kind {
+            StatementKind::Assign { access: of, value } | StatementKind::Store { access: of, value }
+                if self.is(of, access) =>
+            {
+                (Some(value), Exprs::TRUE)
+            }
+            StatementKind::Set { access: of, when } | StatementKind::Reset { access: of, when }
+                if self.is(of, access) =>
+            {
+                (None, when)
+            }
+            _ => {
+                self.read(object, access);
+                return;
+            }
+        };
+        if !object.is_fixed() {
+            // It may be any of them, and writes all of none.
+            return;
+        }
+        self.write(object, access, statement, value, when);
+        if let Some(value) = value.filter(|_| self.can_be_lost(object)) {
+            self.wait(
+                object,
+                Waiting {
+                    access,
+                    value,
+                    in_loop: statement.in_loop,
+                    overridden: Vec::new(),
+                    by: Vec::new(),
+                    open: true,
+                },
+            );
+        }
+    }
+
+    fn is(&self, of: u32, access: &Access) -> bool {
+        self.model.accesses.get(of as usize).is_some_and(|it| std::ptr::eq(it, access))
+    }
+
+    /// Something may look at the object.
+    fn read(&mut self, object: &'a Object, access: &Access) {
+        match &object.footprint.area {
+            Area::Indirect => self.areas.clear(),
+            _ if !object.is_fixed() && object.class == Class::Symbol => self.areas.clear(),
+            // Where the parts of a symbol lie is not known, nor how large it is.
+            area if !object.is_fixed() || matches!(area, Area::Symbol(_)) => {
+                self.areas.remove(area);
+            }
+            area => {
+                // Which block is open, and whose instance this is, is not known.
+                if matches!(area, Area::OpenData | Area::OpenInstance) {
+                    self.areas.retain(|it, _| !matches!(it, Area::Data(_)));
+                }
+                if matches!(area, Area::OpenData | Area::Data(_)) {
+                    self.areas.remove(&Area::OpenInstance);
+                }
+                let path = access.path;
+                self.each(&object.footprint, |walk, at| {
+                    let waiting = &walk.waiting[at];
+                    let (write, overridden) = (waiting.access.path, &waiting.overridden);
+                    let apart = write != path
+                        && walk.is_short(&[write, path])
+                        && walk.space.without(&[write, path], overridden) == Verdict::Never;
+                    walk.waiting[at].open = apart;
+                });
+            }
+        }
+    }
+
+    fn write(
+        &mut self,
+        object: &'a Object,
+        access: &'a Access,
+        statement: &Statement,
+        value: Option<ExprId>,
+        when: ExprId,
+    ) {
+        let (path, in_loop, anchor) = (access.path, statement.in_loop, access.anchor);
+        self.each(&object.footprint, |walk, at| {
+            let waiting = &mut walk.waiting[at];
+            let written = &walk.model.object(waiting.access.object).footprint;
+            if !object.footprint.contains(written) || waiting.in_loop != in_loop || waiting.by.len() >= MOST_WAITING {
+                return;
+            }
+            waiting.overridden.push([path, when]);
+            waiting.by.push(anchor);
+            let write = waiting.access.path;
+            let straight_on = write == path && when == Exprs::TRUE;
+            let waiting = &walk.waiting[at];
+            let surely = straight_on
+                || walk.is_short(&[write, path, when])
+                    && walk.space.without(&[write], &waiting.overridden) == Verdict::Never;
+            if !surely {
+                return;
+            }
+            // What takes the same value again has lost nothing; a constant before the branches is a default, and what is cleared
+            // first is cleared to be sure.
+            let (is_constant, is_clear) = match *walk.model.exprs.get(waiting.value) {
+                Expr::Bool(it) => (true, !it),
+                Expr::Int(it) => (true, it == 0),
+                Expr::Float(it) => (true, f64::from_bits(it) == 0.0),
+                Expr::Text(_) => (true, false),
+                _ => (false, false),
+            };
+            if value != Some(waiting.value) && !is_clear && (straight_on || !is_constant) {
+                let local = is_local(written);
+                let by = waiting.by.clone().into_boxed_slice();
+                walk.found.push(Lost { write: waiting.access.anchor, by, local });
+            }
+            walk.waiting[at].open = false;
+        });
+    }
+
+    fn is_short(&self, conditions: &[ExprId]) -> bool {
+        conditions.iter().all(|&it| self.model.exprs.is_within(it, LONGEST))
+    }
+
+    fn wait(&mut self, object: &'a Object, it: Waiting<'a>) {
+        let Some(granules) = granules(&object.footprint) else { return };
+        let Ok(at) = u32::try_from(self.waiting.len()) else { return };
+        self.waiting.push(it);
+        let lists = self.areas.entry(&object.footprint.area).or_default();
+        for granule in granules {
+            let list = lists.entry(granule).or_default();
+            list.retain(|&it| self.waiting[it as usize].open);
+            if list.len() >= MOST_WAITING {
+                self.waiting[list.remove(0) as usize].open = false;
+            }
+            list.push(at);
+        }
+    }
+
+    /// Everything that waits and shares memory with a place.
+    fn each(&mut self, place: &Footprint, mut each: impl FnMut(&mut Self, usize)) {
+        let Some(lists) = self.areas.get(&place.area) else { return };
+        let mut found: Vec<u32> = match granules(place) {
+            Some(granules) => granules.filter_map(|it| lists.get(&it)).flatten().copied().collect(),
+            None => lists.values().flatten().copied().collect(),
+        };
+        found.sort_unstable();
+        found.dedup();
+        for at in found {
+            let waiting = &self.waiting[at as usize];
+            if waiting.open && self.model.object(waiting.access.object).footprint.overlaps(place) {
+                each(self, at as usize);
+            }
+        }
+    }
+
+    /// Whether a value of the object has no effect but that something may read it in this scan or a later one.
+    fn can_be_lost(&self, object: &Object) -> bool {
+        match object.class {
+            Class::Output | Class::Memory | Class::Symbol | Class::LocalData => true,
+            // Which block is open is not known.
+            Class::Data | Class::InstanceData | Class::LocalName => match &object.footprint.area {
+                Area::Data(_) | Area::Local => true,
+                Area::OpenInstance => !self.model.opens_instance,
+                // What a caller gave, a function may have under two names.
+                Area::LocalName(name) => self.model.interface.as_ref().is_some_and(|it| {
+                    let item = it.items.iter().find(|it| it.name.eq_ignore_ascii_case(name));
+                    item.is_some_and(|it| it.role != Role::InOut)
+                }),
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+}
+
+fn is_local(place: &Footprint) -> bool {
+    matches!(place.area, Area::Local | Area::LocalName(_) | Area::OpenInstance)
+}
+
+fn granules(place: &Footprint) -> Option<std::ops::Range<u32>> {
+    let range = place.start / GRANULE..place.end().saturating_sub(1) / GRANULE + 1;
+    (range.len() <= WIDEST as usize).then_some(range)
+}
+
+/// The writes of one object that are lost in one unit.
+pub struct LostWrites<'a> {
+    pub unit: u32,
+    /// As written.
+    pub text: &'a str,
+    /// In the order of execution.
+    pub writes: Vec<&'a Lost>,
+}
+
+/// What the units of a program lose, without what other code may see between the write and the one that overrides it, and
+/// without the bits of which [`drives`](super::drives) tells that they are driven in several places.
+pub fn of_program<'a, 'n>(program: &'a ProgramIndex<'a>, neighbours: impl Fn(u32) -> &'n [u32]) -> Vec<LostWrites<'a>> {
+    let mut shared: FxHashMap<Site, &Lost> = FxHashMap::default();
+    let mut found = Vec::new();
+    for (unit, facts) in (0..).zip(&program.units) {
+        let mut own: BTreeMap<u32, Vec<&Lost>> = BTreeMap::new();
+        for it in &facts.lost {
+            if !it.local {
+                shared.insert(Site { unit, anchor: it.write }, it);
+            } else if let Some(object) = facts.uses.iter().find(|of| of.anchor == it.write).map(|it| it.object) {
+                own.entry(object).or_default().push(it);
+            }
+        }
+        found.extend(own.into_iter().filter_map(|(object, writes)| {
+            let text = facts.objects.get(object as usize)?.object.text.as_str();
+            Some(LostWrites { unit, text, writes })
+        }));
+    }
+    if shared.is_empty() {
+        return found;
+    }
+    for (at, uses) in (0..).zip(&program.objects) {
+        let mut writes = uses.uses.iter().filter_map(|it| Some((it, *shared.get(&it.site())?))).peekable();
+        if writes.peek().is_none() || is_driven_by_others(program, uses, neighbours(at)) {
+            continue;
+        }
+        let mut lists: BTreeMap<u32, LostWrites<'_>> = BTreeMap::new();
+        for (it, lost) in writes {
+            let around = neighbours(at).iter().filter_map(|&it| program.objects.get(it as usize));
+            let mut reads = around.chain([uses]).flat_map(|it| it.with_mode(|it| !it.assigns() && it != Mode::Store));
+            if !reads.any(|read| may_see(program, it, lost, read)) {
+                let text = program.text_of(it);
+                let list = lists.entry(it.unit).or_insert_with(|| LostWrites { unit: it.unit, text, writes: vec![] });
+                list.writes.push(lost);
+            }
+        }
+        found.extend(lists.into_values());
+    }
+    found
+}
+
+/// Whether another rule speaks of the object: of bits that are driven more than once, and of outputs by words.
+fn is_driven_by_others(program: &ProgramIndex<'_>, uses: &ObjectUses<'_>, neighbours: &[u32]) -> bool {
+    let object = uses.object;
+    let neighbour_is_written = || neighbours.iter().any(|&it| program.objects[it as usize].is_written());
+    match object.class {
+        Class::Output | Class::Memory | Class::Symbol
+            if object.ty == Type::Bool || uses.has_mode(|it| matches!(it, Mode::Assign | Mode::AssignNot)) =>
+        {
+            !uses.is_scratch() || uses.has_mode(|it| matches!(it, Mode::Set | Mode::Reset))
+        }
+        Class::Output => neighbour_is_written(),
+        // What nothing reads at all is another matter.
+        _ => {
+            program.complete && !uses.is_read() && !neighbours.iter().any(|&it| program.objects[it as usize].is_read())
+        }
+    }
+}
+
+/// Whether a read of the object, or of what shares memory with it, comes between: in code that interrupts the unit, or under
+/// another name than the unit's.
+fn may_see(program: &ProgramIndex<'_>, write: &GlobalUse<'_>, lost: &Lost, read: &GlobalUse<'_>) -> bool {
+    if read.unit != write.unit {
+        let (own, other) = (&program.contexts[write.unit as usize], &program.contexts[read.unit as usize]);
+        return own != other || own.len() > 1;
+    }
+    let last = lost.by.last().copied().unwrap_or_default();
+    let area = |it: &GlobalUse<'_>| {
+        let of = program.units.get(it.unit as usize)?.objects.get(it.it.object as usize)?;
+        Some(&of.object.footprint.area)
+    };
+    // What the unit knows for the same memory was looked at there.
+    (lost.write..last).contains(&read.it.anchor) && area(read) != area(write)
+}

@@ -1,0 +1,419 @@
+//! Code that stands several times in a program, with the same operands or with others.
+//!
+//! A unit tells the form of each statement apart from what it works on ([`Outline`]): two stretches are copies when their
+//! forms are equal one by one, and the operands of one take the place of those of the other one to one. Objects, constants,
+//! labels and the conditions under which control comes to a statement count as operands alike.
+//!
+//! Stretches of [`SHORTEST`] statements are looked up by a hash of their forms and of the order in which their operands first
+//! appear; what is found grows as far as its copies go along.
+
+use std::hash::{BuildHasher as _, Hash, Hasher as _};
+
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet, FxHasher};
+
+use super::Site;
+use super::program::ProgramIndex;
+use crate::model::UnitModel;
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
+use crate::model::object::Type;
+use crate::model::unit::{Access, StatementKind};
+
+/// The statements of a unit, without places and names.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Outline {
+    items: Vec<Item>,
+    operands: Vec<Operand>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Item {
+    /// Of all but the operands; `None` for a statement too large to compare.
+    form: Option<u64>,
+    /// End of its operands, which begin where those of the item before end.
+    end: u32,
+    anchor: Option<u32>,
+}
+
+/// What may be another thing in a copy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Operand {
+    hash: u64,
+    role: Role,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Role {
+    Object,
+    /// A constant, or a value that is not known.
+    Value,
+    /// A label, or the condition under which control is there.
+    Way,
+}
+
+/// A statement of more expressions is not compared.
+const LARGEST: usize = 256;
+
+impl Outline {
+    pub fn new(model: &UnitModel) -> Self {
+        let mut outline = Self::default();
+        let mut labels = model.labels.iter().peekable();
+        let mut accesses = model.accesses.iter().peekable();
+        for (at, statement) in (0..).zip(&model.statements) {
+            let mut own: Vec<&Access> = Vec::new();
+            while let Some(it) = accesses.next_if(|it| it.statement <= at) {
+                own.push(it);
+            }
+            let mut form =
+                Form { model, outline: &mut outline, hasher: FxHasher::default(), seen: FxHashMap::default() };
+            while let Some(it) = labels.next_if(|it| it.statement <= at) {
+                form.operand(&it.name, Role::Way);
+                "label".hash(&mut form.hasher);
+            }
+            let anchor = form.statement(&statement.kind, &own);
+            form.path(statement.path);
+            let hash = (form.seen.len() <= LARGEST).then(|| form.hasher.finish());
+            let end = u32::try_from(outline.operands.len()).unwrap_or(u32::MAX);
+            let anchor = anchor.or_else(|| own.first().map(|it| it.anchor));
+            outline.items.push(Item { form: hash, end, anchor });
+        }
+        outline
+    }
+}
+
+struct Form<'a> {
+    model: &'a UnitModel,
+    outline: &'a mut Outline,
+    hasher: FxHasher,
+    /// Expressions written so far, by their number.
+    seen: FxHashMap<ExprId, u32>,
+}
+
+impl Form<'_> {
+    fn operand(&mut self, it: impl Hash, role: Role) {
+        let hash = FxBuildHasher.hash_one((role, it));
+        self.outline.operands.push(Operand { hash, role });
+    }
+
+    fn object(&mut self, id: ObjectId) {
+        let object = self.model.object(id);
+        // Which of several data blocks is open is not told by the address.
+        ("object", object.ty, object.indexed, object.extracted).hash(&mut self.hasher);
+        let is_block = object.ty == Type::Block;
+        is_block.then_some(object.class).hash(&mut self.hasher);
+        self.operand((&object.footprint, object.ty), Role::Object);
+    }
+
+    fn statement(&mut self, kind: &StatementKind, own: &[&Access]) -> Option<u32> {
+        std::mem::discriminant(kind).hash(&mut self.hasher);
+        let model = self.model;
+        match *kind {
+            StatementKind::Assign { access, value: it }
+            | StatementKind::Store { access, value: it }
+            | StatementKind::Set { access, when: it }
+            | StatementKind::Reset { access, when: it } => {
+                self.expr(it);
+                self.access(access)
+            }
+            StatementKind::Drive { access, pin, when, value } => {
+                pin.hash(&mut self.hasher);
+                self.expr(when);
+                if let Some(it) = value {
+                    self.expr(it);
+                }
+                self.access(access)
+            }
+            StatementKind::Call(at) => {
+                let call = model.calls.get(at as usize)?;
+                call.callee.hash(&mut self.hasher);
+                self.expr(call.when);
+                for it in own {
+                    it.mode.hash(&mut self.hasher);
+                    self.object(it.object);
+                }
+                Some(call.anchor)
+            }
+            StatementKind::Jump(at) => {
+                let jump = model.jumps.get(at as usize)?;
+                self.expr(jump.when);
+                self.operand(&jump.label, Role::Way);
+                Some(jump.anchor)
+            }
+            StatementKind::Return { when, how } => {
+                how.hash(&mut self.hasher);
+                self.expr(when);
+                None
+            }
+            StatementKind::Branch { condition, .. } => {
+                self.expr(condition);
+                None
+            }
+            StatementKind::Halt | StatementKind::Exit | StatementKind::Open | StatementKind::Other => None,
+        }
+    }
+
+    fn access(&mut self, at: u32) -> Option<u32> {
+        let access = self.model.accesses.get(at as usize)?;
+        access.mode.hash(&mut self.hasher);
+        self.object(access.object);
+        Some(access.anchor)
+    }
+
+    fn path(&mut self, path: ExprId) {
+        let is_certain = path == Exprs::TRUE;
+        is_certain.hash(&mut self.hasher);
+        if !is_certain {
+            self.operand(path, Role::Way);
+        }
+    }
+
+    /// Operands before what they are operands of, each once.
+    fn expr(&mut self, id: ExprId) {
+        enum Visit {
+            Enter(ExprId),
+            Leave(ExprId),
+        }
+        let mut open = vec![Visit::Enter(id)];
+        while let Some(it) = open.pop() {
+            match it {
+                Visit::Enter(id) => match self.seen.get(&id) {
+                    Some(number) => ("again", number).hash(&mut self.hasher),
+                    None if self.seen.len() > LARGEST => return,
+                    None => {
+                        open.push(Visit::Leave(id));
+                        let from = open.len();
+                        self.model.exprs.each_operand(id, |it| open.push(Visit::Enter(it)));
+                        open[from..].reverse();
+                    }
+                },
+                Visit::Leave(id) => {
+                    let number = u32::try_from(self.seen.len()).unwrap_or(u32::MAX);
+                    if self.seen.insert(id, number).is_none() {
+                        self.node(id);
+                    }
+                }
+            }
+        }
+    }
+
+    fn node(&mut self, id: ExprId) {
+        let node = self.model.exprs.get(id);
+        std::mem::discriminant(node).hash(&mut self.hasher);
+        match node {
+            Expr::Bool(it) => it.hash(&mut self.hasher),
+            Expr::Int(it) => self.operand(it, Role::Value),
+            Expr::Float(it) => self.operand(it, Role::Value),
+            Expr::Text(it) => self.operand(it, Role::Value),
+            Expr::Opaque(it) => self.operand(it, Role::Value),
+            Expr::Read { object, .. } => self.object(*object),
+            Expr::Edge { object, rising, .. } => {
+                rising.hash(&mut self.hasher);
+                self.object(*object);
+            }
+            Expr::Compare(op, ..) => op.hash(&mut self.hasher),
+            Expr::Binary(op, ..) => op.hash(&mut self.hasher),
+            Expr::Call(name, list) => (name, list.len()).hash(&mut self.hasher),
+            Expr::Not(_) | Expr::And(..) | Expr::Or(..) | Expr::Xor(..) | Expr::Negate(_) => {}
+        }
+    }
+}
+
+/// A stretch of statements with its copies.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Repeat {
+    /// Number of statements.
+    pub length: usize,
+    /// The first place of each copy, in the order of the units and of their code.
+    pub places: Vec<Site>,
+    /// Whether all work on the same operands.
+    pub identical: bool,
+}
+
+/// The shortest stretch that is looked for.
+pub const SHORTEST: usize = 3;
+
+/// So many copies of one stretch are told, and a stretch has at most so many statements.
+const MOST_COPIES: usize = 64;
+const LONGEST: usize = 2000;
+
+/// What stands several times in a program, if its copies are `saved` statements more than one stretch of it.
+pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
+    let all = All::new(program);
+    let mut copies: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
+    let mut keys = Vec::with_capacity(all.items.len());
+    for at in 0..all.items.len() {
+        let key = all.key(at);
+        keys.push(key);
+        if let Some(key) = key {
+            copies.entry(key).or_default().push(at);
+        }
+    }
+    let mut covered = vec![false; all.items.len()];
+    let mut found = Vec::new();
+    for (at, key) in keys.into_iter().enumerate() {
+        let Some(list) = key.and_then(|it| copies.get(&it)).filter(|it| it.len() > 1) else { continue };
+        if covered[at] {
+            continue;
+        }
+        let from = list.partition_point(|&it| it <= at);
+        let mut others: Vec<usize> = Vec::new();
+        for &it in &list[from..] {
+            let before = others.last().copied().unwrap_or(at);
+            if it >= before + SHORTEST && !covered[it..it + SHORTEST].contains(&true) && others.len() < MOST_COPIES {
+                others.push(it);
+            }
+        }
+        let Some((length, mut places)) = all.grow(at, &others, &covered, saved) else { continue };
+        places.insert(0, at);
+        for &it in &places {
+            covered[it..it + length].fill(true);
+        }
+        let identical = places.iter().all(|&it| all.operands(at, length) == all.operands(it, length));
+        let places = places.into_iter().filter_map(|it| all.site(it, length)).collect();
+        found.push(Repeat { length, places, identical });
+    }
+    found.retain(|it| it.places.len() > 1);
+    found
+}
+
+/// The statements of all units, one after the other.
+struct All<'a> {
+    /// Unit, its outline, and the number of the item in it.
+    items: Vec<(u32, &'a Outline, usize)>,
+}
+
+impl<'a> All<'a> {
+    fn new(program: &ProgramIndex<'a>) -> Self {
+        let outlines = (0..).zip(&program.units).filter_map(|(unit, it)| Some((unit, it.outline.as_deref()?)));
+        let items = outlines.flat_map(|(unit, it)| (0..it.items.len()).map(move |at| (unit, it, at))).collect();
+        Self { items }
+    }
+
+    fn form(&self, at: usize) -> Option<u64> {
+        let (_, outline, item) = *self.items.get(at)?;
+        outline.items[item].form
+    }
+
+    fn unit(&self, at: usize) -> Option<u32> {
+        self.items.get(at).map(|it| it.0)
+    }
+
+    fn operands(&self, at: usize, length: usize) -> &'a [Operand] {
+        let Some(&(_, outline, item)) = self.items.get(at) else { return &[] };
+        let start = item.checked_sub(1).map_or(0, |it| outline.items[it].end);
+        let end = outline.items.get(item + length - 1).map_or(start, |it| it.end);
+        outline.operands.get(start as usize..end as usize).unwrap_or_default()
+    }
+
+    fn site(&self, at: usize, length: usize) -> Option<Site> {
+        let &(unit, outline, item) = self.items.get(at)?;
+        let anchor = outline.items.get(item..item + length)?.iter().find_map(|it| it.anchor)?;
+        Some(Site { unit, anchor })
+    }
+
+    /// Equal for stretches of the shortest length that are copies.
+    fn key(&self, at: usize) -> Option<u64> {
+        let mut hasher = FxHasher::default();
+        for it in at..at + SHORTEST {
+            (self.form(it)?, self.unit(it)? == self.unit(at)?).hash(&mut hasher);
+        }
+        if self.unit(at) != self.unit(at + SHORTEST - 1) {
+            return None;
+        }
+        let mut numbers: FxHashMap<u64, usize> = FxHashMap::default();
+        for it in self.operands(at, SHORTEST) {
+            let next = numbers.len();
+            numbers.entry(it.hash).or_insert(next).hash(&mut hasher);
+        }
+        Some(hasher.finish())
+    }
+
+    /// The length and the copies of the stretch at a place that save most.
+    fn grow(&self, at: usize, others: &[usize], covered: &[bool], saved: usize) -> Option<(usize, Vec<usize>)> {
+        let mut alive: Vec<(usize, Renaming)> = others.iter().map(|&it| (it, Renaming::default())).collect();
+        let mut linked = Linked::default();
+        let mut best: Option<(usize, usize, Vec<usize>)> = None;
+        for length in 1..=LONGEST {
+            let last = at + length - 1;
+            if self.unit(last) != self.unit(at) || covered.get(last).is_none_or(|it| *it) {
+                break;
+            }
+            let mut end = at + length;
+            alive.retain_mut(|(other, renaming)| {
+                let there = *other + length - 1;
+                let goes_on = end <= *other
+                    && self.unit(there) == self.unit(*other)
+                    && covered.get(there).is_some_and(|it| !it)
+                    && self.form(last).is_some_and(|it| self.form(there) == Some(it))
+                    && renaming.extend(self.operands(last, 1), self.operands(there, 1));
+                if goes_on {
+                    end = *other + length;
+                }
+                goes_on
+            });
+            let Some((_, renaming)) = alive.first() else { break };
+            if !linked.extend(self.operands(last, 1), renaming) {
+                break;
+            }
+            let saves = alive.len() * linked.acting;
+            if linked.acting >= SHORTEST && saves >= saved && best.as_ref().is_none_or(|it| it.0 <= saves) {
+                best = Some((saves, length, alive.iter().map(|it| it.0).collect()));
+            }
+        }
+        best.map(|(_, length, copies)| (length, copies))
+    }
+}
+
+/// Which operand of a copy stands for which.
+#[derive(Default)]
+struct Renaming {
+    there: FxHashMap<u64, u64>,
+    here: FxHashMap<u64, u64>,
+}
+
+impl Renaming {
+    fn extend(&mut self, here: &[Operand], there: &[Operand]) -> bool {
+        here.len() == there.len()
+            && here.iter().zip(there).all(|(a, b)| {
+                *self.there.entry(a.hash).or_insert(b.hash) == b.hash
+                    && *self.here.entry(b.hash).or_insert(a.hash) == a.hash
+            })
+    }
+
+    fn is_same(&self, it: &Operand) -> bool {
+        self.there.get(&it.hash) == Some(&it.hash)
+    }
+}
+
+/// Whether the statements belong together: each works on something that one before it works on. What is the same in all
+/// copies, as the bit of an operating mode is, binds nothing, unless everything is.
+#[derive(Default)]
+struct Linked {
+    renamed: FxHashSet<u64>,
+    same: FxHashSet<u64>,
+    other_values: bool,
+    /// Statements that work on objects.
+    acting: usize,
+}
+
+impl Linked {
+    fn extend(&mut self, operands: &[Operand], renaming: &Renaming) -> bool {
+        let objects = || operands.iter().filter(|it| it.role == Role::Object);
+        self.other_values |= operands.iter().any(|it| it.role == Role::Value && !renaming.is_same(it));
+        if objects().next().is_none() {
+            // A jump or a branch alone has nothing to bind it.
+            return true;
+        }
+        let all_same = self.renamed.is_empty() && !self.other_values;
+        let is_linked = self.acting == 0
+            || objects().any(|it| self.renamed.contains(&it.hash) || all_same && self.same.contains(&it.hash));
+        for it in objects() {
+            if renaming.is_same(it) {
+                self.same.insert(it.hash)
+            } else {
+                self.renamed.insert(it.hash)
+            };
+        }
+        self.acting += 1;
+        is_linked
+    }
+}
