@@ -198,10 +198,8 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let tree = parse(db, unit);
     let model = lower::lower(tree.syntax(), text, unit.entity(db).clone(), language);
     let mut facts = UnitFacts::new(&model);
-    facts.has_gaps |= unit.unsupported(db).is_some()
-        || !tree.errors().is_empty()
-        || ends_open(tree.syntax())
-        || is_fragment(db, unit);
+    facts.has_gaps |= unit.unsupported(db).is_some() || !tree.errors().is_empty() || ends_open(tree.syntax());
+    facts.is_fragment = is_fragment(db, unit);
     let settings = db.project().settings(db);
     let family = unit_family(db, unit).unwrap_or(Family::Pl7);
     if let Some(condition) = settings.condition_of(unit.entity(db)).filter(|_| family == Family::Pl7) {

@@ -21,7 +21,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let Some(target) = call.target else { continue };
         let facts = program.units[target as usize];
         let kind = facts.entity.block_kind();
-        let Some(declared) = facts.declared.as_deref().filter(|_| !facts.has_gaps) else { continue };
+        let Some(declared) = facts.declared.as_deref().filter(|_| !facts.has_gaps && !facts.is_fragment) else {
+            continue;
+        };
         if matches!(kind, Some(BlockKind::Fb | BlockKind::Fc)) {
             let parameters = declared.fields().iter();
             let parameters: Vec<&Field> =

@@ -28,7 +28,9 @@ fn items(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
     }
     for (unit, facts) in (0..).zip(&cx.program.units) {
-        let Some(interface) = facts.interface.as_ref().filter(|_| facts.instructions > 0 && !facts.has_gaps) else {
+        let Some(interface) =
+            facts.interface.as_ref().filter(|_| facts.instructions > 0 && !facts.has_gaps && !facts.is_fragment)
+        else {
             continue;
         };
         let named =

@@ -35,6 +35,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             && !facts.commented
             && !is_headed
             && !facts.has_gaps
+            && !facts.is_fragment
             && facts.instructions > 0
         {
             sink.report(ProgramIndex::heading(unit), format!("this {what} has no comment"));

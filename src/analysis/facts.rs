@@ -150,6 +150,8 @@ pub struct UnitFacts {
     pub writes_indirectly: bool,
     /// The unit, or some of it, was not understood: what seems to be missing may stand there.
     pub has_gaps: bool,
+    /// The unit is part of something that is not there.
+    pub is_fragment: bool,
     /// What the unit holds of a chart.
     pub chart: Option<Box<ChartFacts>>,
     /// The parameters and variables of a DFB type.
@@ -315,6 +317,7 @@ impl UnitFacts {
             reads_indirectly: model.reads_indirectly,
             writes_indirectly: model.writes_indirectly,
             has_gaps: model.has_gaps,
+            is_fragment: false,
             chart: model.chart.as_ref().map(|it| Box::new(ChartFacts::new(it, model))),
             interface: model.interface.clone(),
             condition: None,

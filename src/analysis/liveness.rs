@@ -303,11 +303,12 @@ pub fn of_program<'a, 'n>(program: &'a ProgramIndex<'a>, neighbours: impl Fn(u32
     let mut shared: FxHashMap<Site, &Lost> = FxHashMap::default();
     let mut found = Vec::new();
     for (unit, facts) in (0..).zip(&program.units) {
+        shared.extend(facts.lost.iter().filter(|it| !it.local).map(|it| (Site { unit, anchor: it.write }, it)));
+    }
+    for (unit, facts) in program.judged_units() {
         let mut own: BTreeMap<u32, Vec<&Lost>> = BTreeMap::new();
-        for it in &facts.lost {
-            if !it.local {
-                shared.insert(Site { unit, anchor: it.write }, it);
-            } else if let Some(object) = facts.uses.iter().find(|of| of.anchor == it.write).map(|it| it.object) {
+        for it in facts.lost.iter().filter(|it| it.local) {
+            if let Some(object) = facts.uses.iter().find(|of| of.anchor == it.write).map(|it| it.object) {
                 own.entry(object).or_default().push(it);
             }
         }

@@ -529,7 +529,7 @@ impl<'a> Skeleton<'a> {
         let sure = sure(&units, &calls);
         let order = order(family, &units, &calls);
         let complete = is_complete(family, &units, &calls);
-        let partial = units.iter().any(|it| it.has_gaps);
+        let partial = units.iter().any(|it| it.has_gaps || it.is_fragment);
         let (charts, actions, layouts) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
         Self {
             family,
@@ -1047,7 +1047,7 @@ fn has_chart(units: &[&UnitFacts]) -> bool {
 
 /// An FB without its call, a listing pasted from a course: such texts are part of something that was not read.
 fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> bool {
-    let entry = has_main(family, units) && !units.iter().any(|it| it.has_gaps);
+    let entry = has_main(family, units) && !units.iter().any(|it| it.has_gaps || it.is_fragment);
     let closed = calls.iter().all(|call| match &call.it.callee {
         Callee::Block(BlockName::Number(kind, _)) if kind.is_system() => true,
         Callee::Block(name) if family == Family::Step5 && step5::is_function(name) => true,

@@ -362,7 +362,7 @@ impl Exprs {
     }
 
     /// Every expression that a condition is made of, itself too, each once.
-    fn each_part(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
+    pub fn each_part(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
         let mut seen = FxHashSet::default();
         let mut stack = vec![condition];
         while let Some(id) = stack.pop() {

@@ -1292,10 +1292,10 @@ mod tests {
         check("a.scy", "Dear reader", unsupported(unsupported::VARIABLES));
         check("a.ufb", "[HEADER]\n[SOURCE_UNIT]\nA8F0\n[EOF]", unsupported(unsupported::ENCRYPTED));
         check("a.fef", "[HEADER]\n[EOF]", Detected::Exchange);
-        // The smallest expansion, on a page of its own.
-        for page in ["", "PAGE 0\n", "END_PAGE\n"] {
+        // The smallest expansion, on a page of its own: its heading says the language, the file none.
+        for page in ["", "PAGE 0\n"] {
             let text = format!("GR7 : MAST - P - MACRO2\n{page}IN_STEP AT (C 0,L 1)\nOUT_STEP AT (C 0,L 3)\n");
-            check("a.txt", &text, Detected::Pasted(Pl7Text::Gr7));
+            check("a.txt", &text, ST);
         }
         check("a.gr7", "NB_PAGES = 8\nPAGE 0\nEND_PAGE", Detected::Pasted(Pl7Text::Gr7));
         check(

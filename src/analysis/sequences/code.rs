@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use crate::model::UnitModel;
 use crate::model::entity::Entity;
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Places, Pool};
-use crate::model::object::Class;
+use crate::model::object::{Class, Object};
 use crate::model::unit::{Pin, StatementKind};
 
 /// The code of a unit that may be part of a sequence, or of a table of steps.
@@ -17,11 +17,24 @@ pub struct CodeFacts {
     pub acts: Box<[Act]>,
     /// What their conditions and values are made of.
     pub pool: Pool,
-    /// Whether a bit is set and another one reset under one condition, several bits are set, or a word is combined with
-    /// another one.
+    /// Which bits the values of bits ask for.
+    pub asks: Box<[Ask]>,
+    /// Whether a bit is set and another one reset under one condition, a word is complemented, or conditions are too long to
+    /// be looked into.
     pub may_evolve: bool,
+    /// Bits that may hold themselves by a bit of another word.
+    pub held: u32,
     /// Whether it sets a bit of its own and resets it: each of its calls may be a step.
     pub may_be_step: bool,
+}
+
+/// A bit gets a value in a way that asks for another bit; both are indices into the unit's objects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Ask {
+    pub how: How,
+    pub object: u32,
+    /// `None` where it asks for nothing.
+    pub of: Option<u32>,
 }
 
 /// Conditions and values are places in the pool, objects indices into the unit's objects.
@@ -77,17 +90,14 @@ impl CodeFacts {
             let write = |how, access: u32, value| {
                 let access = model.accesses.get(access as usize)?;
                 let object = model.object(access.object);
-                // Outputs are no steps, and conditions seldom read them.
-                let is_kept = matches!(
-                    object.class,
-                    Class::Memory
-                        | Class::Data
-                        | Class::InstanceData
-                        | Class::Symbol
-                        | Class::LocalName
-                        | Class::LocalData
-                );
-                is_kept.then_some(Drawn::Write(how, access.object.0, access.anchor, statement.network, path, value))
+                is_kept(object).then_some(Drawn::Write(
+                    how,
+                    access.object.0,
+                    access.anchor,
+                    statement.network,
+                    path,
+                    value,
+                ))
             };
             let act = match statement.kind {
                 StatementKind::Set { access, when } => write(How::Set, access, Some(when)),
@@ -114,11 +124,20 @@ impl CodeFacts {
             return None;
         }
         let (pool, places) = model.exprs.cut_all(acts.iter().flat_map(Drawn::conditions));
-        let may_evolve = may_evolve(model, &acts);
+        let (asks, may_evolve) = asks(model, &acts);
+        let held = u32::try_from(acts.iter().filter(|it| may_hold(model, it)).count()).unwrap_or(u32::MAX);
         let may_be_step = may_be_step(model, &acts);
         let acts = acts.iter().map(|it| it.place(&places)).collect();
-        Some(Box::new(Self { acts, pool, may_evolve, may_be_step }))
+        Some(Box::new(Self { acts, pool, asks, may_evolve, held, may_be_step }))
     }
+}
+
+/// Whether an object may be a step, or carry what a step is asked for. Outputs are no steps, and conditions seldom read them.
+fn is_kept(object: &Object) -> bool {
+    matches!(
+        object.class,
+        Class::Memory | Class::Data | Class::InstanceData | Class::Symbol | Class::LocalName | Class::LocalData
+    )
 }
 
 /// An act with its conditions as they are in the unit.
@@ -169,23 +188,71 @@ fn may_be_step(model: &UnitModel, acts: &[Drawn]) -> bool {
     own(How::Set).any(|set| own(How::Reset).any(|it| it == set))
 }
 
-/// See [`CodeFacts::may_evolve`].
-fn may_evolve(model: &UnitModel, acts: &[Drawn]) -> bool {
-    /// A chain that resets a step by the next one has at least so many.
-    const FEWEST_SETS: usize = 3;
-    let mut done: FxHashMap<(ExprId, ExprId), [bool; 2]> = FxHashMap::default();
-    let mut sets = 0;
-    acts.iter().any(|it| match *it {
-        Drawn::Write(_, _, _, _, Exprs::TRUE, Some(Exprs::TRUE)) => false,
-        Drawn::Write(how @ (How::Set | How::Reset), _, _, _, path, Some(when)) => {
-            let found = done.entry((path, when)).or_default();
-            found[usize::from(how == How::Set)] = true;
-            sets += usize::from(how == How::Set);
-            *found == [true; 2] || sets >= FEWEST_SETS
+/// See [`CodeFacts::asks`] and [`CodeFacts::may_evolve`].
+fn asks(model: &UnitModel, acts: &[Drawn]) -> (Box<[Ask]>, bool) {
+    /// Of a longer condition, all may be asked for.
+    const LONGEST: usize = 64;
+    let pulses: FxHashMap<ExprId, ExprId> = acts
+        .iter()
+        .filter_map(|it| match *it {
+            Drawn::Remember(_, _, of, pulse, _) => Some((pulse, of)),
+            _ => None,
+        })
+        .collect();
+    let mut asks: Vec<Ask> = Vec::new();
+    let mut may_evolve = false;
+    let mut moved: FxHashMap<(ExprId, ExprId), [Option<u32>; 2]> = FxHashMap::default();
+    let mut open: Vec<ExprId> = Vec::new();
+    for it in acts {
+        let Drawn::Write(how, object, _, _, path, Some(value)) = *it else { continue };
+        if how == How::Store {
+            open.push(value);
+            for _ in 0..LONGEST {
+                let Some(at) = open.pop() else { break };
+                may_evolve |= matches!(model.exprs.get(at), Expr::Binary(Operator::Xor, ..));
+                model.exprs.each_operand(at, |it| open.push(it));
+            }
+            may_evolve |= !open.is_empty();
+            open.clear();
+            continue;
         }
-        Drawn::Write(How::Store, _, _, _, _, Some(value)) => {
-            matches!(model.exprs.get(value), Expr::Binary(Operator::And | Operator::Or, ..) | Expr::Read { .. })
+        if matches!(how, How::Set | How::Reset) && (path, value) != (Exprs::TRUE, Exprs::TRUE) {
+            let of = moved.entry((path, value)).or_default();
+            of[usize::from(how == How::Set)] = Some(object);
+            may_evolve |= matches!(of, [Some(a), Some(b)] if a != b);
         }
-        _ => false,
-    })
+        asks.push(Ask { how, object, of: None });
+        open.extend([path, value]);
+        for _ in 0..LONGEST {
+            let Some(at) = open.pop() else { break };
+            match model.exprs.get(at) {
+                Expr::Read { object: read, .. } | Expr::Edge { object: read, .. } if is_kept(model.object(*read)) => {
+                    asks.push(Ask { how, object, of: Some(read.0) });
+                }
+                _ => {}
+            }
+            open.extend(pulses.get(&at));
+            model.exprs.each_operand(at, |it| open.push(it));
+        }
+        may_evolve |= !open.is_empty();
+        open.clear();
+    }
+    asks.sort_unstable();
+    asks.dedup();
+    (asks.into(), may_evolve)
+}
+
+/// Whether an assigned bit may hold itself by another one: in one of several ways to be 1, a bit of the same area is asked
+/// for together with the absence of something.
+fn may_hold(model: &UnitModel, it: &Drawn) -> bool {
+    let Drawn::Write(How::Assign, object, _, _, _, Some(value)) = *it else { return false };
+    let area = &model.object(ObjectId(object)).footprint.area;
+    let (mut ways, mut negates, mut reads) = (false, false, false);
+    model.exprs.each_part(value, |it| match model.exprs.get(it) {
+        Expr::Or(..) => ways = true,
+        Expr::Not(_) => negates = true,
+        Expr::Read { object: read, .. } => reads |= read.0 != object && model.object(*read).footprint.area == *area,
+        _ => {}
+    });
+    ways && negates && reads
 }

@@ -5,12 +5,13 @@
 //! [`judge`] asks where the scan does something else than the five rules say (GRF:128-152).
 
 pub mod code;
+mod gate;
 pub mod judge;
 pub mod set_reset;
 pub mod tables;
 pub mod trace;
 
-use self::code::{CodeFacts, How};
+use self::code::How;
 use self::judge::{Deviation, Judge};
 use self::set_reset::{Found, FoundTransition};
 use self::trace::{Event, Trace};
@@ -87,13 +88,7 @@ impl SequenceStep<'_> {
 
 impl<'a> Sequences<'a> {
     pub fn new(program: &ProgramIndex<'a>) -> Self {
-        /// Fewer calls of one block are no steps that follow one another.
-        const FEWEST_CALLS: usize = 2;
-        let may_evolve = program.units.iter().zip(&program.callers).any(|(unit, callers)| {
-            let is_step = |it: &CodeFacts| it.may_be_step && callers.len() >= FEWEST_CALLS;
-            unit.code.as_deref().is_some_and(|it| it.may_evolve || is_step(it))
-        });
-        if !may_evolve {
+        if !gate::may_evolve(program) {
             return Self::default();
         }
         let mut trace = Trace::of_scan(program);
