@@ -355,7 +355,7 @@ impl UnitFacts {
             && self.interface == old.interface
             && condition(self) == condition(old);
         let is_named_same = self.entity == old.entity && self.declared == old.declared;
-        if !is_same || !is_named_same && !(is_code(self) && is_code(old)) {
+        if !(is_same && (is_named_same || is_code(self) && is_code(old))) {
             return Difference::Unknown;
         }
         let calls_same = self.calls.len() == old.calls.len()
