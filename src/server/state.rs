@@ -191,8 +191,8 @@ impl Root {
             return;
         }
         let explicit = !file.found;
-        let settings = self.settings();
-        match load::from_text(path, text, explicit, &settings, Dialect::Auto) {
+        let input = load::from_text(path, text, explicit, self.db.project().settings(&self.db), Dialect::Auto);
+        match input {
             Ok(input) => self.take(input),
             Err(_) => self.drop(path),
         }

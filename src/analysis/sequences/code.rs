@@ -17,10 +17,9 @@ pub struct CodeFacts {
     pub acts: Box<[Act]>,
     /// What their conditions and values are made of.
     pub pool: Pool,
-    /// Which bits the values of bits ask for.
+    /// Which bits the values of bits ask for, or take the place of.
     pub asks: Box<[Ask]>,
-    /// Whether a bit is set and another one reset under one condition, a word is complemented, or conditions are too long to
-    /// be looked into.
+    /// Whether a word is complemented, or conditions are too long to be looked into.
     pub may_evolve: bool,
     /// Bits that may hold themselves by a bit of another word.
     pub held: u32,
@@ -219,7 +218,12 @@ fn asks(model: &UnitModel, acts: &[Drawn]) -> (Box<[Ask]>, bool) {
         if matches!(how, How::Set | How::Reset) && (path, value) != (Exprs::TRUE, Exprs::TRUE) {
             let of = moved.entry((path, value)).or_default();
             of[usize::from(how == How::Set)] = Some(object);
-            may_evolve |= matches!(of, [Some(a), Some(b)] if a != b);
+            // One takes the place of the other.
+            if let [Some(reset), Some(set)] = *of
+                && reset != set
+            {
+                asks.push(Ask { how: How::Set, object: set, of: Some(reset) });
+            }
         }
         asks.push(Ask { how, object, of: None });
         open.extend([path, value]);

@@ -19,12 +19,14 @@ enum Bit {
     Open,
 }
 
-/// Whether some unit may be part of a sequence: it complements words, or sets and resets under one condition; enough bits
-/// hold themselves; a block is called that may be a step; or a bit is set or reset in a way that asks, directly or by way of
-/// assigned bits, for another one that is both set and reset.
+/// Whether some unit may be part of a sequence: it complements words; enough bits hold themselves; a block is called that may
+/// be a step; or a bit that is both set and reset asks twice, or is asked for, in what sets and resets, by others of them. One
+/// that is asked for by way of assigned bits counts for two.
 pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
     /// Fewer calls of one block are no steps that follow one another.
     const FEWEST_CALLS: usize = 2;
+    /// A loop of two steps goes to each of them, and on from it.
+    const FEWEST_HANDED: u32 = 2;
     /// Fewer bits that hold themselves are no table.
     const FEWEST_HELD: u32 = 3;
     let all = || (0..).zip(&program.units).filter_map(|(unit, facts)| Some((unit, *facts, facts.code.as_deref()?)));
@@ -54,6 +56,7 @@ pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
         let by_another_name = || facts.objects.get(object as usize).is_some_and(|it| it.object.class == Class::Data);
         steps.contains(&bit(unit, facts, object)) || is_open && by_another_name()
     };
+    let mut handed: FxHashMap<Bit, u32> = FxHashMap::default();
     // What assigned bits ask for, looked up when one of them is asked for.
     let mut assigned: Option<FxHashMap<Bit, Vec<(u32, u32)>>> = None;
     let mut seen: FxHashSet<Bit> = FxHashSet::default();
@@ -62,9 +65,16 @@ pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
         for it in code.asks.iter().filter(stores) {
             let Some(of) = it.of else { continue };
             if of != it.object && is_step(unit, facts, of) {
-                return true;
+                for it in [it.object, of].map(|it| bit(unit, facts, it)) {
+                    let count = handed.entry(it).or_default();
+                    *count += 1;
+                    if *count >= FEWEST_HANDED || it == Bit::Open || is_open {
+                        return true;
+                    }
+                }
+            } else if of != it.object {
+                open.push((unit, of));
             }
-            open.push((unit, of));
         }
     }
     while let Some((unit, object)) = open.pop() {
