@@ -9,6 +9,9 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
+    if !program.has_events() {
+        return;
+    }
     let event = |it: &GlobalUse<'_>| program.tasks(it.unit).find(|it| matches!(it, Context::Event(_)));
     let mut exchanged: Vec<(Group<'_>, &Object, GlobalUse<'_>)> = Vec::new();
     for uses in program.objects.iter().filter(|it| matches!(it.object.class, Class::Input | Class::Output)) {

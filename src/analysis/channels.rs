@@ -94,7 +94,7 @@ pub fn comes_with(trigger: &Object, object: &Object) -> bool {
 /// calls. Reading an output does not exchange it.
 pub fn of_events<'u, 'a>(program: &'u ProgramIndex<'a>) -> BTreeMap<u16, Vec<(&'a Object, &'u GlobalUse<'a>)>> {
     let mut events: BTreeMap<u16, Vec<(&'a Object, &'u GlobalUse<'a>)>> = BTreeMap::new();
-    if !program.contexts.iter().flatten().any(|it| matches!(it, Context::Event(_))) {
+    if !program.has_events() {
         return events;
     }
     for uses in &program.objects {

@@ -617,6 +617,11 @@ impl<'a> Skeleton<'a> {
         contexts.copied().filter(|it| *it != Context::Startup)
     }
 
+    /// Whether an event runs some unit.
+    pub fn has_events(&self) -> bool {
+        self.contexts.iter().flatten().any(|it| matches!(it, Context::Event(_)))
+    }
+
     /// Whether two units surely run in tasks of which one interrupts the other, and in none that is the same.
     pub fn in_other_tasks(&self, a: u32, b: u32) -> bool {
         let has = |unit: u32| self.tasks(unit).next().is_some();
