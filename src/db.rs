@@ -23,7 +23,7 @@ use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::fields::{Declaration, Declarations};
 use crate::analysis::program::{ProgramIndex, Skeleton};
-use crate::analysis::repeats::Outline;
+use crate::analysis::repeats::Forms;
 use crate::analysis::symbols::{self, SymbolTable};
 use crate::draw::{self, Drawing, Mark};
 use crate::lint::settings::{ProgramScope, Settings};
@@ -207,7 +207,7 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     }
     facts.commented = is_commented(tree.syntax(), &model);
     if settings.active().iter().any(|it| it.name == "duplicate-code") {
-        facts.outline = Some(Box::new(Outline::new(&model)));
+        facts.forms = Some(Box::new(Forms::new(&model)));
     }
     let target = settings.target_or(family, *named_controller(db, unit.file(db)));
     let cx = UnitCx::new(&model, &tree, text, settings, &target);

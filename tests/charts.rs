@@ -1,36 +1,20 @@
 //! One structure, drawn and written in every form that charts have: the same findings, none on a correct chart, and each
 //! mistake found.
 
+#[path = "common/structure.rs"]
+mod structure;
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
+use structure::{Block, block};
 
 use plclint::db::{self, Input};
 use plclint::lint::Severity;
 use plclint::lint::settings::{FILE_NAME, Folders, Overrides, Settings};
 use plclint::source::detect::Dialect;
 use proptest::prelude::*;
-
-/// A chart that is put together correctly.
-#[derive(Debug, Clone)]
-enum Block {
-    Step,
-    Sequence(Vec<Self>),
-    Alternatives(Vec<Self>),
-    Parallel(Vec<Self>),
-}
-
-fn block() -> impl Strategy<Value = Block> {
-    Just(Block::Step).prop_recursive(3, 8, 3, |inner| {
-        let some = || prop::collection::vec(inner.clone(), 2..=3);
-        prop_oneof![
-            some().prop_map(Block::Sequence),
-            some().prop_map(Block::Alternatives),
-            some().prop_map(Block::Parallel),
-        ]
-    })
-}
 
 type Cell = (u32, u32);
 
@@ -360,7 +344,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_correct_chart_has_no_finding(block in block()) {
+    fn a_correct_chart_has_no_finding(block in block(3)) {
         let chart = Chart::new(&block, None);
         prop_assume!(chart.fits());
         for it in forms(&chart) {
@@ -369,7 +353,7 @@ proptest! {
     }
 
     #[test]
-    fn every_form_has_the_same_findings(block in block(), wrong in wrong()) {
+    fn every_form_has_the_same_findings(block in block(3), wrong in wrong()) {
         let chart = Chart::new(&block, Some(wrong));
         prop_assume!(chart.fits() && chart.done);
         let texts = forms(&chart);

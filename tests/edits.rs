@@ -1,5 +1,8 @@
 //! What is found after an edit is what a fresh run finds, though only the objects that the edit touches are judged anew.
 
+#[path = "common/numbers.rs"]
+mod numbers;
+
 use std::path::{Path, PathBuf};
 
 use plclint::db::{self, FileFinding, RootDatabase, SourceFile};
@@ -7,17 +10,7 @@ use plclint::lint::settings::{FILE_NAME, Folders, Overrides, Settings};
 use plclint::load;
 use plclint::source::detect::Dialect;
 
-/// A sequence of numbers that is the same on every machine (Marsaglia's xorshift).
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        usize::try_from(self.0 % end.max(1) as u64).unwrap()
-    }
-}
+use numbers::Numbers;
 
 fn settings(folder: &Path) -> Settings {
     let text = std::fs::read_to_string(folder.join(FILE_NAME)).unwrap_or_default();

@@ -1,7 +1,11 @@
 //! Sequences coded with bits: what is taken for one, what is not, and what is said of it.
 
+#[path = "common/structure.rs"]
+mod structure;
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use structure::{Block, block};
 
 use plclint::analysis::facts::UnitFacts;
 use plclint::analysis::program::ProgramIndex;
@@ -495,26 +499,6 @@ fn each_line_of_the_tables_counts() {
     check(Tables { steps: skipped, ..ONE_BY_ONE }, &["Q011"]);
 }
 
-/// A chart that is put together correctly.
-#[derive(Debug, Clone)]
-enum Block {
-    Step,
-    Sequence(Vec<Self>),
-    Alternatives(Vec<Self>),
-    Parallel(Vec<Self>),
-}
-
-fn block() -> impl Strategy<Value = Block> {
-    Just(Block::Step).prop_recursive(3, 8, 2, |inner| {
-        let some = || prop::collection::vec(inner.clone(), 2..=3);
-        prop_oneof![
-            some().prop_map(Block::Sequence),
-            some().prop_map(Block::Alternatives),
-            some().prop_map(Block::Parallel),
-        ]
-    })
-}
-
 #[derive(Default)]
 struct Writer {
     steps: usize,
@@ -577,7 +561,7 @@ proptest! {
 
     /// A correct chart, correctly coded: recovered as it was, and nothing is said of it.
     #[test]
-    fn what_was_coded_is_recovered(block in block()) {
+    fn what_was_coded_is_recovered(block in block(2)) {
         let mut writer = Writer::default();
         let (first, last) = writer.write(&block);
         let (a, b) = (writer.step(), writer.step());

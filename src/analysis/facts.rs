@@ -13,7 +13,7 @@ use super::cost::UnitCost;
 use super::gaps;
 use super::liveness::{self, Lost};
 use super::ranges::demands::{self, Demanded};
-use super::repeats::Outline;
+use super::repeats::Forms;
 use super::sequences::code::CodeFacts;
 use super::turns::{self, FactLoop};
 use crate::model::UnitModel;
@@ -171,7 +171,7 @@ pub struct UnitFacts {
     /// Writes whose value nothing in the unit reads.
     pub lost: Vec<Lost>,
     /// What its statements look like, for those who search for repetitions.
-    pub outline: Option<Box<Outline>>,
+    pub forms: Option<Box<Forms>>,
 }
 
 /// In what facts of a unit are others than before.
@@ -327,7 +327,7 @@ impl UnitFacts {
             loops: turns::loops(model),
             code: CodeFacts::new(model),
             lost: liveness::lost(model),
-            outline: None,
+            forms: None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Code that stands several times in a program, with the same operands or with others.
 //!
-//! A unit tells the form of each statement apart from what it works on ([`Outline`]): two stretches are copies when their
+//! A unit tells the form of each statement apart from what it works on ([`Forms`]): two stretches are copies when their
 //! forms are equal one by one, and the operands of one take the place of those of the other one to one. Objects, constants,
 //! labels and the conditions under which control comes to a statement count as operands alike.
 //!
@@ -20,7 +20,7 @@ use crate::model::unit::{Access, StatementKind};
 
 /// The statements of a unit, without places and names.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Outline {
+pub struct Forms {
     items: Vec<Item>,
     operands: Vec<Operand>,
 }
@@ -53,9 +53,9 @@ enum Role {
 /// A statement of more expressions is not compared.
 const LARGEST: usize = 256;
 
-impl Outline {
+impl Forms {
     pub fn new(model: &UnitModel) -> Self {
-        let mut outline = Self::default();
+        let mut forms = Self::default();
         let mut labels = model.labels.iter().peekable();
         let mut accesses = model.accesses.iter().peekable();
         for (at, statement) in (0..).zip(&model.statements) {
@@ -63,8 +63,7 @@ impl Outline {
             while let Some(it) = accesses.next_if(|it| it.statement <= at) {
                 own.push(it);
             }
-            let mut form =
-                Form { model, outline: &mut outline, hasher: FxHasher::default(), seen: FxHashMap::default() };
+            let mut form = Form { model, forms: &mut forms, hasher: FxHasher::default(), seen: FxHashMap::default() };
             while let Some(it) = labels.next_if(|it| it.statement <= at) {
                 form.operand(&it.name, Role::Way);
                 "label".hash(&mut form.hasher);
@@ -72,17 +71,17 @@ impl Outline {
             let anchor = form.statement(&statement.kind, &own);
             form.path(statement.path);
             let hash = (form.seen.len() <= LARGEST).then(|| form.hasher.finish());
-            let end = u32::try_from(outline.operands.len()).unwrap_or(u32::MAX);
+            let end = u32::try_from(forms.operands.len()).unwrap_or(u32::MAX);
             let anchor = anchor.or_else(|| own.first().map(|it| it.anchor));
-            outline.items.push(Item { form: hash, end, anchor });
+            forms.items.push(Item { form: hash, end, anchor });
         }
-        outline
+        forms
     }
 }
 
 struct Form<'a> {
     model: &'a UnitModel,
-    outline: &'a mut Outline,
+    forms: &'a mut Forms,
     hasher: FxHasher,
     /// Expressions written so far, by their number.
     seen: FxHashMap<ExprId, u32>,
@@ -91,7 +90,7 @@ struct Form<'a> {
 impl Form<'_> {
     fn operand(&mut self, it: impl Hash, role: Role) {
         let hash = FxBuildHasher.hash_one((role, it));
-        self.outline.operands.push(Operand { hash, role });
+        self.forms.operands.push(Operand { hash, role });
     }
 
     fn object(&mut self, id: ObjectId) {
@@ -277,20 +276,20 @@ pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
 
 /// The statements of all units, one after the other.
 struct All<'a> {
-    /// Unit, its outline, and the number of the item in it.
-    items: Vec<(u32, &'a Outline, usize)>,
+    /// Unit, its forms, and the number of the item in it.
+    items: Vec<(u32, &'a Forms, usize)>,
 }
 
 impl<'a> All<'a> {
     fn new(program: &ProgramIndex<'a>) -> Self {
-        let outlines = (0..).zip(&program.units).filter_map(|(unit, it)| Some((unit, it.outline.as_deref()?)));
-        let items = outlines.flat_map(|(unit, it)| (0..it.items.len()).map(move |at| (unit, it, at))).collect();
+        let formss = (0..).zip(&program.units).filter_map(|(unit, it)| Some((unit, it.forms.as_deref()?)));
+        let items = formss.flat_map(|(unit, it)| (0..it.items.len()).map(move |at| (unit, it, at))).collect();
         Self { items }
     }
 
     fn form(&self, at: usize) -> Option<u64> {
-        let (_, outline, item) = *self.items.get(at)?;
-        outline.items[item].form
+        let (_, forms, item) = *self.items.get(at)?;
+        forms.items[item].form
     }
 
     fn unit(&self, at: usize) -> Option<u32> {
@@ -298,15 +297,15 @@ impl<'a> All<'a> {
     }
 
     fn operands(&self, at: usize, length: usize) -> &'a [Operand] {
-        let Some(&(_, outline, item)) = self.items.get(at) else { return &[] };
-        let start = item.checked_sub(1).map_or(0, |it| outline.items[it].end);
-        let end = outline.items.get(item + length - 1).map_or(start, |it| it.end);
-        outline.operands.get(start as usize..end as usize).unwrap_or_default()
+        let Some(&(_, forms, item)) = self.items.get(at) else { return &[] };
+        let start = item.checked_sub(1).map_or(0, |it| forms.items[it].end);
+        let end = forms.items.get(item + length - 1).map_or(start, |it| it.end);
+        forms.operands.get(start as usize..end as usize).unwrap_or_default()
     }
 
     fn site(&self, at: usize, length: usize) -> Option<Site> {
-        let &(unit, outline, item) = self.items.get(at)?;
-        let anchor = outline.items.get(item..item + length)?.iter().find_map(|it| it.anchor)?;
+        let &(unit, forms, item) = self.items.get(at)?;
+        let anchor = forms.items.get(item..item + length)?.iter().find_map(|it| it.anchor)?;
         Some(Site { unit, anchor })
     }
 

@@ -6,21 +6,10 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use crate::client::{Client, pulling};
+use crate::numbers::Numbers;
 
-/// A sequence of numbers that is the same on every machine (Marsaglia's xorshift).
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        usize::try_from(self.0 % end.max(1) as u64).unwrap()
-    }
-
-    fn of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
-        &list[self.below(list.len())]
-    }
+fn one_of<'a, T>(numbers: &mut Numbers, list: &'a [T]) -> &'a T {
+    &list[numbers.below(list.len())]
 }
 
 /// Pieces that change what a text means: heads of units, labels, ends of comments, line breaks of all kinds.
@@ -99,7 +88,7 @@ impl Edit {
         let start = boundary(text, numbers.below(text.len() + 1));
         let length = if numbers.below(3) == 0 { numbers.below(60) } else { 0 };
         let end = boundary(text, (start + length).min(text.len())).max(start);
-        let new = if length > 0 && numbers.below(2) == 0 { "" } else { *numbers.of(&PIECES) };
+        let new = if length > 0 && numbers.below(2) == 0 { "" } else { *one_of(numbers, &PIECES) };
         Self { file, at: start, old: text[start..end].to_owned(), new: new.to_owned() }
     }
 

@@ -3,5 +3,7 @@
 mod client;
 mod edits;
 mod findings;
+#[path = "../common/numbers.rs"]
+mod numbers;
 mod requests;
 mod robust;
