@@ -52,12 +52,29 @@ pub struct SourceFile {
     #[returns(deref)]
     pub path: String,
     #[returns(ref)]
-    pub text: Arc<str>,
+    content: Content,
     #[returns(copy)]
     pub detected: Detected,
+}
+
+/// The text of a file, with what is known of it.
+#[derive(Debug, Clone)]
+pub struct Content {
+    text: Arc<str>,
     /// The units of the text, where an edit tells them from those before it.
-    #[returns(ref)]
-    known_spans: Option<Arc<(SplitHint, Arc<[UnitSpan]>)>>,
+    spans: Option<(SplitHint, Arc<[UnitSpan]>)>,
+}
+
+impl From<Arc<str>> for Content {
+    fn from(text: Arc<str>) -> Self {
+        Self { text, spans: None }
+    }
+}
+
+impl SourceFile {
+    pub fn text(self, db: &dyn Db) -> &Arc<str> {
+        &self.content(db).text
+    }
 }
 
 /// The one project: all files of a run, and what they are checked against.
@@ -128,7 +145,7 @@ pub fn layout<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[(Unit<'db>, u32)]>
 #[salsa::tracked(no_eq)]
 fn spans(db: &dyn Db, file: SourceFile) -> Arc<[UnitSpan]> {
     let hint = split_hint(db, file);
-    match file.known_spans(db).as_deref() {
+    match &file.content(db).spans {
         Some((of, known)) if *of == hint => known.clone(),
         _ => split::split(file.text(db), file.detected(db), &hint).into(),
     }
@@ -183,7 +200,7 @@ pub fn lines(db: &dyn Db, file: SourceFile) -> LineIndex {
 pub struct UnitAnalysis {
     facts: Arc<UnitFacts>,
     /// Of the rules that look at one unit, with ranges relative to it.
-    findings: Ran<TextRange>,
+    findings: Ran<Finding<TextRange>>,
     /// Places that the facts name.
     anchors: Box<[TextRange]>,
     /// Bytes of text that the syntax could not place.
@@ -466,7 +483,7 @@ pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable 
 
 /// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].
 #[salsa::tracked]
-pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site> {
+pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Arc<Finding<Site>>> {
     let project = db.project();
     let settings = project.settings(db);
     let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
@@ -476,7 +493,6 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let whole = ProgramIndex::of(skeleton.clone());
     let key = (program.key(db).clone(), program.family(db));
     let step = db.memory().step(key, target, &facts, &whole);
-    step.tell(&whole);
     let cx = ProgramCx::new(&whole, settings, &target);
     let mut ran = run_program_rules(&cx, |it| matches!(it, Check::Program(_)));
     let part = step.part(&skeleton);
@@ -488,15 +504,16 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     ran
 }
 
-fn run_program_rules(cx: &ProgramCx<'_>, are_wanted: impl Fn(&Check) -> bool) -> Ran<Site> {
-    run_rules(cx.settings, |rule, findings| match rule.check {
+fn run_program_rules(cx: &ProgramCx<'_>, are_wanted: impl Fn(&Check) -> bool) -> Ran<Arc<Finding<Site>>> {
+    let Ran { findings, failed } = run_rules(cx.settings, |rule, findings| match rule.check {
         Check::Program(check) | Check::Object(check)
             if are_wanted(&rule.check) && rule.is_for_family(cx.program.family) =>
         {
             crate::lint::run(rule, findings, |sink| check(cx, sink));
         }
         _ => {}
-    })
+    });
+    Ran { findings: findings.into_iter().map(Arc::new).collect(), failed }
 }
 
 /// The facts of a unit of a program, symbols resolved.
@@ -558,15 +575,18 @@ pub fn index<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Arc<UnitFacts>])
 
 /// Findings of a program whose primary place is in a file, or in the configuration.
 #[salsa::tracked(returns(deref))]
-fn program_findings_in<'db>(db: &'db dyn Db, program: Program<'db>, file: SourceFile) -> Vec<Finding<Site>> {
+fn program_findings_in<'db>(db: &'db dyn Db, program: Program<'db>, file: SourceFile) -> Vec<Arc<Finding<Site>>> {
     program_findings_by_file(db, program).get(&file).cloned().unwrap_or_default()
 }
 
 /// Findings of a program by the file of their primary place.
 #[salsa::tracked(no_eq)]
-fn program_findings_by_file<'db>(db: &'db dyn Db, program: Program<'db>) -> FxHashMap<SourceFile, Vec<Finding<Site>>> {
+fn program_findings_by_file<'db>(
+    db: &'db dyn Db,
+    program: Program<'db>,
+) -> FxHashMap<SourceFile, Vec<Arc<Finding<Site>>>> {
     let units = program_units(db, program);
-    let mut by_file: FxHashMap<SourceFile, Vec<Finding<Site>>> = FxHashMap::default();
+    let mut by_file: FxHashMap<SourceFile, Vec<Arc<Finding<Site>>>> = FxHashMap::default();
     for finding in &program_findings(db, program).findings {
         if finding.place.is_configured() {
             by_file.entry(db.project().configuration(db)).or_default().push(finding.clone());
@@ -595,15 +615,15 @@ pub struct FileFinding {
 
 /// What came of a set of rules.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Ran<P> {
-    pub findings: Vec<Finding<P>>,
+pub struct Ran<F> {
+    pub findings: Vec<F>,
     /// Codes of rules that panicked.
     pub failed: Vec<&'static str>,
 }
 
 /// Runs each active rule apart from the others: one that panics is lost alone. Rules never query the database, so no
 /// cancellation passes through here.
-fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec<Finding<P>>)) -> Ran<P> {
+fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec<Finding<P>>)) -> Ran<Finding<P>> {
     let mut ran = Ran { findings: Vec::new(), failed: Vec::new() };
     for rule in settings.active() {
         let before = ran.findings.len();
@@ -640,7 +660,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
     for &program in programs_of(db, file) {
         let mut places = Places::new(db, program);
         for finding in program_findings_in(db, program, file) {
-            found.extend(finding.clone().map(|site| places.of(site)));
+            found.extend(Finding::clone(finding).map(|site| places.of(site)));
         }
         let table = symbol_table(db, program);
         if !table.is_empty() {
@@ -704,7 +724,7 @@ pub fn configuration_findings(db: &dyn Db) -> Vec<FileFinding> {
         let mut places = Places::new(db, program);
         for finding in program_findings_in(db, program, file) {
             let Some(severity) = selection.severity(finding.rule, finding.severity) else { continue };
-            let Some(mut finding) = finding.clone().map(|site| places.of(site)) else { continue };
+            let Some(mut finding) = Finding::clone(finding).map(|site| places.of(site)) else { continue };
             finding.severity = severity;
             finding.message = symbol_table(db, program).annotate(&finding.message);
             let (entity, family) = ("configuration".to_owned(), Some(program.family(db)));
@@ -851,7 +871,7 @@ impl RootDatabase {
         });
         let mut db = Self { project: None, memory: Arc::default(), storage: salsa::Storage::new(log) };
         let source = settings.source();
-        let configuration = SourceFile::new(&db, source.path.clone(), source.text.clone(), Detected::NotPlc, None);
+        let configuration = SourceFile::new(&db, source.path.clone(), source.text.clone().into(), Detected::NotPlc);
         db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings, configuration));
         db
     }
@@ -859,7 +879,7 @@ impl RootDatabase {
     /// Adds files, in the order given.
     pub fn set_files(&mut self, inputs: impl IntoIterator<Item = Input>) -> Vec<SourceFile> {
         let files: Vec<SourceFile> =
-            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text, it.detected, None)).collect();
+            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text.into(), it.detected)).collect();
         self.memory.forget();
         self.project().set_files(self).to(files.clone());
         files
@@ -867,7 +887,7 @@ impl RootDatabase {
 
     /// Adds a file that is no part of the project yet. It stays until the database goes.
     pub fn add_file(&mut self, input: Input) -> SourceFile {
-        SourceFile::new(self, input.path, input.source.text, input.detected, None)
+        SourceFile::new(self, input.path, input.source.text.into(), input.detected)
     }
 
     /// Says which files are the project; they come in the order of their paths.
@@ -889,7 +909,7 @@ impl RootDatabase {
                 configuration.set_path(self).to(source.path.clone());
             }
             if source.text != *configuration.text(self) {
-                configuration.set_text(self).to(source.text.clone());
+                configuration.set_content(self).to(source.text.clone().into());
             }
             self.project().set_settings(self).to(settings);
         }
@@ -911,7 +931,8 @@ impl RootDatabase {
     /// Says what a file is.
     pub fn set_detected(&mut self, file: SourceFile, detected: Detected) {
         if file.detected(self) != detected {
-            file.set_known_spans(self).to(None);
+            let text = file.text(self).clone();
+            file.set_content(self).to(text.into());
             file.set_detected(self).to(detected);
         }
     }
@@ -924,9 +945,8 @@ impl RootDatabase {
         }
         let (old, hint) = (file.text(self), split_hint(self, file));
         let known = split::resplit(old, spans(self, file), &text, file.detected(self), &hint);
-        let known = known.map(|it| Arc::new((hint, it.into())));
-        file.set_known_spans(self).to(known);
-        file.set_text(self).to(text);
+        let spans = known.map(|it| (hint, it.into()));
+        file.set_content(self).to(Content { text, spans });
     }
 }
 

@@ -23,7 +23,8 @@ fn items(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut outside: FxHashSet<(u32, SmolStr)> = FxHashSet::default();
     let has_public = |it: &UnitFacts| it.interface.iter().any(|it| it.items.iter().any(|it| it.role == Role::Public));
     let is_asked = cx.program.units.iter().any(|it| has_public(it));
-    for it in cx.program.places().filter(|it| is_asked && it.class == Class::Symbol) {
+    let places = is_asked.then(|| cx.program.places());
+    for it in places.into_iter().flatten().filter(|it| it.class == Class::Symbol) {
         if let Some((instance, item)) = it.text.split_once('.')
             && let Some((unit, _)) = cx.program.dfb_of(instance)
         {

@@ -246,12 +246,17 @@ impl Islands {
     }
 
     /// Of the program whose facts were taken last.
-    pub fn summary(&self, program: &ProgramIndex<'_>) -> Summary {
+    pub(super) fn access(&self, skeleton: &Skeleton<'_>) -> Access {
         let used = self.objects.iter().filter(|it| !it.units.is_empty());
         let mut addressed = Modes::default();
         self.units.iter().for_each(|it| addressed.join(it.addressed));
-        let access = Access::new(program, used.map(|it| (&it.fact.object, it.modes)), addressed);
-        Summary { access, uncleared: program.uncleared().to_vec() }
+        Access::new(skeleton, used.map(|it| (&it.fact.object, it.modes)), addressed)
+    }
+
+    /// What the program does with an object of a unit that others can use too.
+    pub(super) fn modes(&self, unit: u32, object: u32) -> Modes {
+        let id = self.units.get(unit as usize).and_then(|it| it.ids.get(object as usize));
+        id.and_then(|it| self.objects.get(*it as usize)).map(|it| it.modes).unwrap_or_default()
     }
 
     /// Adds all objects of the islands that some of them lie on.

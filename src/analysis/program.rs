@@ -143,6 +143,10 @@ impl Modes {
         })
     }
 
+    pub(super) fn set_and_reset(self) -> bool {
+        [Mode::Set, Mode::Reset].iter().all(|it| self.0 & Self::bit(*it) != 0)
+    }
+
     /// Whether one of them drives a pin.
     fn drive(self) -> bool {
         self.0 & Self::bit(Mode::Drive(Pin::Whole)) != 0
@@ -236,9 +240,9 @@ impl Indirect {
 /// What can be said of all objects together, which those that judge a single one want to know.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Summary {
-    pub(super) access: Access,
+    access: Access,
     /// Tables of steps that the program does not clear, of which rule Q007 tells.
-    pub(super) uncleared: Vec<Footprint>,
+    uncleared: Vec<Footprint>,
 }
 
 /// How places are used that code does not name, or not by their address.
@@ -413,10 +417,14 @@ impl<'a> ProgramIndex<'a> {
     }
 
     /// Takes what is kept of the program as it is.
-    pub(crate) fn know(&self, islands: Arc<Islands>, summary: Summary) {
-        let Summary { access, uncleared } = summary;
-        // What it has found out itself is the same.
-        let _ = (self.islands.set(islands), self.access.set(access), self.uncleared.set(uncleared));
+    pub(crate) fn know(&self, islands: Arc<Islands>) {
+        // What is known already is the same.
+        let _ = self.islands.set(islands);
+    }
+
+    /// What is kept of its objects, if anything is.
+    pub(super) fn islands(&self) -> Option<&Islands> {
+        self.islands.get().map(Arc::as_ref)
     }
 
     pub fn skeleton(&self) -> &Rc<Skeleton<'a>> {
@@ -475,6 +483,9 @@ impl<'a> ProgramIndex<'a> {
 
     fn access(&self) -> &Access {
         self.access.get_or_init(|| {
+            if let Some(islands) = self.islands() {
+                return islands.access(self);
+            }
             let mut addressed = Modes::default();
             let all = self.objects.iter().filter(|it| Access::is_addressed(it.object));
             all.for_each(|it| addressed.join(it.modes));
@@ -482,7 +493,7 @@ impl<'a> ProgramIndex<'a> {
         })
     }
 
-    pub(super) fn uncleared(&self) -> &[Footprint] {
+    fn uncleared(&self) -> &[Footprint] {
         self.uncleared.get_or_init(|| {
             // A rule that asks for sequences which cannot be had fails by itself.
             let faults = || self.sequences().faults.iter().filter_map(|it| it.table.clone()).collect();

@@ -35,7 +35,7 @@ struct State {
     facts: Vec<Arc<UnitFacts>>,
     outline: Outline,
     summary: Summary,
-    ran: Ran<Site>,
+    ran: Ran<Arc<Finding<Site>>>,
     kept: Option<Kept>,
 }
 
@@ -91,7 +91,12 @@ impl Memory {
     }
 
     /// Ends a step with what was found in its part, or in the whole program. Returns all findings.
-    pub(super) fn keep(&self, step: Step, ran: Ran<Site>, summary: impl FnOnce() -> Summary) -> Ran<Site> {
+    pub(super) fn keep(
+        &self,
+        step: Step,
+        ran: Ran<Arc<Finding<Site>>>,
+        summary: impl FnOnce() -> Summary,
+    ) -> Ran<Arc<Finding<Site>>> {
         let Step { key, target, facts, outline, from } = step;
         let state = match from {
             Some(from) => from.join(facts, outline, ran),
@@ -107,13 +112,6 @@ impl Memory {
 }
 
 impl Step {
-    /// Lets the program know what is kept of it.
-    pub(super) fn tell(&self, program: &ProgramIndex<'_>) {
-        if let Some(from) = &self.from {
-            program.know(from.kept.islands.clone(), from.state.summary.clone());
-        }
-    }
-
     /// The islands to judge anew; `None` when that is the whole program.
     pub(super) fn part<'a>(&self, skeleton: &Rc<Skeleton<'a>>) -> Option<ProgramIndex<'a>> {
         let from = self.from.as_ref()?;
@@ -138,26 +136,27 @@ impl State {
         });
         let islands = Arc::make_mut(&mut kept.islands);
         let mut moved = islands.update(program, facts, &by.changed, &by.units);
-        if islands.summary(program) != self.summary {
-            islands.update(&old(), &self.facts, &by.changed, &by.units);
+        islands.close(&mut moved);
+        program.know(kept.islands.clone());
+        if program.summary() != self.summary {
+            Arc::make_mut(&mut kept.islands).update(&old(), &self.facts, &by.changed, &by.units);
             self.kept = Some(kept);
             return None;
         }
-        islands.close(&mut moved);
         Some((kept, moved))
     }
 }
 
 impl From {
     /// The state of the program now, of which `ran` was found in the part that moved.
-    fn join(self, facts: Vec<Arc<UnitFacts>>, outline: Outline, ran: Ran<Site>) -> State {
+    fn join(self, facts: Vec<Arc<UnitFacts>>, outline: Outline, ran: Ran<Arc<Finding<Site>>>) -> State {
         let Self { state, kept: Kept { islands, subjects }, units, moved } = self;
-        let has_moved = |(finding, subjects): &(Finding<Site>, Vec<u32>)| match subjects[..] {
+        let has_moved = |(finding, subjects): &(Arc<Finding<Site>>, Vec<u32>)| match subjects[..] {
             [] => units.binary_search(&finding.place.unit).is_ok(),
             _ => subjects.iter().any(|it| moved.contains(it)),
         };
         let unmoved = state.ran.findings.into_iter().zip(subjects).filter(|it| !has_moved(it));
-        let (mut findings, mut subjects): (Vec<Finding<Site>>, Vec<Vec<u32>>) = unmoved.unzip();
+        let (mut findings, mut subjects): (Vec<Arc<Finding<Site>>>, Vec<Vec<u32>>) = unmoved.unzip();
         subjects.extend(ran.findings.iter().map(|it| islands.at(it.place)));
         findings.extend(ran.findings);
         let mut failed = state.ran.failed;

@@ -2,6 +2,8 @@
 
 use rowan::{TextRange, TextSize};
 
+use super::scan::equal_bytes;
+
 /// A place as an editor shows it. Both count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineCol {
@@ -33,21 +35,25 @@ impl LineIndex {
         let mut line_starts = Vec::with_capacity(bytes.len() / 24 + 1);
         line_starts.push(0);
         // Lines are short: a vector search for each break costs more than looking at eight bytes at a time.
-        let words = bytes.chunks_exact(8);
-        let rest = words.remainder();
-        let starts_after = |at: usize| bytes[at] == b'\n' || bytes[at] == b'\r' && bytes.get(at + 1) != Some(&b'\n');
-        for (word, at) in words.zip((0..).step_by(8)) {
-            let has_break = word.iter().fold(false, |found, it| found | matches!(it, b'\n' | b'\r'));
-            if has_break {
-                line_starts.extend((at..at + 8).filter(|&at| starts_after(at)).map(|at| at as u32 + 1));
+        let starts_after = |at: usize| match bytes.get(at) {
+            Some(b'\n') => true,
+            Some(b'\r') => bytes.get(at + 1) != Some(&b'\n'),
+            _ => false,
+        };
+        for (word, at) in words(bytes).zip((0..).step_by(8)) {
+            let mut found = equal_bytes(word, b'\n') | equal_bytes(word, b'\r');
+            while found != 0 {
+                let at = at + found.trailing_zeros() as usize / 8;
+                if starts_after(at) {
+                    line_starts.push(at as u32 + 1);
+                }
+                found &= found - 1;
             }
         }
-        let rest = bytes.len() - rest.len()..bytes.len();
-        line_starts.extend(rest.filter(|&at| starts_after(at)).map(|at| at as u32 + 1));
         let (mut continuation, mut astral) = (None, None);
         if !bytes.is_ascii() {
-            continuation = BitSet::new(bytes, |byte| byte & 0xc0 == 0x80);
-            astral = BitSet::new(bytes, |byte| byte >= 0xf0);
+            continuation = BitSet::new(bytes, |word| word >> 7 & !(word >> 6));
+            astral = BitSet::new(bytes, |word| word >> 7 & word >> 6 & word >> 5 & word >> 4);
         }
         Self { line_starts: line_starts.into(), len: bytes.len() as u32, continuation, astral }
     }
@@ -144,21 +150,28 @@ struct BitSet {
     ranks: Box<[u32]>,
 }
 
+/// A word with 1 in each byte.
+const ONES: u64 = u64::from_le_bytes([1; 8]);
+
+/// The text by eight bytes, the first one lowest; the last of them is filled up with zeros.
+fn words(bytes: &[u8]) -> impl Iterator<Item = u64> {
+    bytes.chunks(8).map(|it| {
+        it.try_into()
+            .map(u64::from_le_bytes)
+            .unwrap_or_else(|_| it.iter().rfold(0, |word, &it| word << 8 | u64::from(it)))
+    })
+}
+
 /// Words that share one entry of `ranks`.
 const BLOCK: usize = 8;
 
 impl BitSet {
-    /// The offsets of the bytes that `member` accepts; `None` if there are none.
-    fn new(bytes: &[u8], member: impl Fn(u8) -> bool) -> Option<Self> {
-        let words: Box<[u64]> = bytes
-            .chunks(64)
-            .map(|chunk| {
-                if chunk.is_ascii() {
-                    return 0;
-                }
-                chunk.iter().enumerate().fold(0, |word, (bit, &byte)| word | u64::from(member(byte)) << bit)
-            })
-            .collect();
+    /// The offsets of some bytes; `None` if there are none. `members` sets the lowest bit of each byte of a word that is one.
+    fn new(bytes: &[u8], members: impl Fn(u64) -> u64) -> Option<Self> {
+        // Gathers the lowest bit of each byte, that of the first byte lowest.
+        let gather = |word: u64| (members(word) & ONES).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+        let fold = |chunk: &[u8]| words(chunk).zip((0..).step_by(8)).fold(0, |all, (it, at)| all | gather(it) << at);
+        let words: Box<[u64]> = bytes.chunks(64).map(|chunk| if chunk.is_ascii() { 0 } else { fold(chunk) }).collect();
         let mut members = 0;
         let ranks = words
             .chunks(BLOCK)

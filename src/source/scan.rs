@@ -174,7 +174,7 @@ fn find_any<const N: usize>(bytes: &[u8], from: usize, wanted: [u8; N]) -> Optio
 
 /// Sets the high bit of the first byte of the word, counted from the lowest, that equals `byte`. Higher bytes may be
 /// marked although they differ.
-fn equal_bytes(word: u64, byte: u8) -> u64 {
+pub(super) fn equal_bytes(word: u64, byte: u8) -> u64 {
     const ONES: u64 = u64::from_le_bytes([1; 8]);
     let zeros = word ^ (ONES * byte as u64);
     zeros.wrapping_sub(ONES) & !zeros & (ONES << 7)

@@ -1,11 +1,10 @@
 //! Whether it is worth while to follow a scan: most programs set and reset bits, and few of them hand an activity over.
 
-use std::hash::BuildHasher as _;
-
-use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::code::{Ask, CodeFacts, How};
 use crate::analysis::facts::UnitFacts;
+use crate::analysis::islands::Islands;
 use crate::analysis::program::ProgramIndex;
 use crate::model::layout::DataType;
 use crate::model::object::Class;
@@ -42,32 +41,14 @@ pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
         return true;
     }
     let stores = |it: &&Ask| matches!(it.how, How::Set | How::Reset);
-    // Of most bits, it is seen at once that they are not both set and reset.
-    let mut seen = [Marks::new(), Marks::new()];
+    let mut steps = Steps { islands: program.islands(), given: FxHashMap::default() };
     for (unit, facts, code) in all() {
-        for it in code.asks.iter().filter(stores) {
-            seen[usize::from(it.how == How::Set)].insert(bit(unit, facts, it.object));
-        }
+        code.asks.iter().filter(stores).for_each(|it| steps.insert(bit(unit, facts, it.object), it.how));
     }
-    let may_be_both = |it: &Bit| seen.iter().all(|seen| seen.may_have(it));
-    let mut given: FxHashMap<Bit, [bool; 2]> = FxHashMap::default();
-    for (unit, facts, code) in all() {
-        for it in code.asks.iter().filter(stores) {
-            let bit = bit(unit, facts, it.object);
-            if bit == Bit::Open || may_be_both(&bit) {
-                given.entry(bit).or_default()[usize::from(it.how == How::Set)] = true;
-            }
-        }
-    }
-    let steps: FxHashSet<Bit> =
-        given.into_iter().filter(|it| it.1 == [true; 2] || it.0 == Bit::Open).map(|it| it.0).collect();
-    if steps.is_empty() {
-        return false;
-    }
-    let is_open = steps.contains(&Bit::Open);
+    let is_open = steps.given.contains_key(&Bit::Open);
     let is_step = |unit: u32, facts: &UnitFacts, object: u32| {
         let by_another_name = || facts.objects.get(object as usize).is_some_and(|it| it.object.class == Class::Data);
-        steps.contains(&bit(unit, facts, object)) || is_open && by_another_name()
+        steps.contains(unit, object, bit(unit, facts, object)) || is_open && by_another_name()
     };
     let mut handed: FxHashMap<Bit, u32> = FxHashMap::default();
     // What assigned bits ask for, looked up when one of them is asked for.
@@ -117,29 +98,27 @@ pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
     false
 }
 
-/// A set of bits that may say of others that they are in it.
-struct Marks(Box<[u64]>);
+/// Bits that are both set and reset.
+struct Steps<'p> {
+    /// What is known of those that units share.
+    islands: Option<&'p Islands>,
+    /// Of the others, whether something resets them, and sets them.
+    given: FxHashMap<Bit, [bool; 2]>,
+}
 
-impl Marks {
-    const WORDS: usize = 1 << 11;
-
-    fn new() -> Self {
-        Self(vec![0; Self::WORDS].into())
+impl Steps<'_> {
+    fn insert(&mut self, bit: Bit, how: How) {
+        if self.islands.is_none() || !matches!(bit, Bit::Shared(_)) {
+            self.given.entry(bit).or_default()[usize::from(how == How::Set)] = true;
+        }
     }
 
-    fn place(bit: &Bit) -> (usize, u64) {
-        let hash = FxBuildHasher.hash_one(bit);
-        ((hash >> 6) as usize % Self::WORDS, 1 << (hash % 64))
-    }
-
-    fn insert(&mut self, bit: Bit) {
-        let (word, mark) = Self::place(&bit);
-        self.0[word] |= mark;
-    }
-
-    fn may_have(&self, bit: &Bit) -> bool {
-        let (word, mark) = Self::place(bit);
-        self.0[word] & mark != 0
+    fn contains(&self, unit: u32, object: u32, bit: Bit) -> bool {
+        match (bit, self.islands) {
+            (Bit::Open, _) => self.given.contains_key(&bit),
+            (Bit::Shared(_), Some(islands)) => islands.modes(unit, object).set_and_reset(),
+            _ => self.given.get(&bit) == Some(&[true; 2]),
+        }
     }
 }
 

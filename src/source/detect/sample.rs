@@ -21,7 +21,11 @@ pub(super) fn tally(text: &str) -> Tally {
 }
 
 fn cut(text: &str) -> &str {
-    text.get(..text.floor_char_boundary(SAMPLE)).unwrap_or_default()
+    let mut end = text.len().min(SAMPLE);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    text.get(..end).unwrap_or_default()
 }
 
 /// The sample of a text that is edited: an edit makes count the lines around it alone.
@@ -146,8 +150,9 @@ mod tests {
             for (at, length, lines) in edits {
                 let take = |sample: &mut Sample, text: &str| sample.take(&text.into());
                 prop_assert_eq!(take(&mut sample, &text), tally(&text));
-                let start = text.floor_char_boundary(at.index(text.len() + 1));
-                let end = text.floor_char_boundary((start + length).min(text.len()));
+                let boundary = |it: usize| (0..=it.min(text.len())).rfind(|it| text.is_char_boundary(*it)).unwrap_or(0);
+                let start = boundary(at.index(text.len() + 1));
+                let end = boundary(start + length);
                 text.replace_range(start..end, &lines.concat());
                 prop_assert_eq!(take(&mut sample, &text), tally(&text));
             }
