@@ -230,8 +230,9 @@ pub struct Repeat {
 /// The shortest stretch that is looked for.
 pub const SHORTEST: usize = 3;
 
-/// So many copies of one stretch are told, and a stretch has at most so many statements.
+/// So many copies of one stretch are told, out of so many places, and a stretch has at most so many statements.
 const MOST_COPIES: usize = 64;
+const MOST_LOOKED_AT: usize = 8 * MOST_COPIES;
 const LONGEST: usize = 2000;
 
 /// What stands several times in a program, if its copies are `saved` statements more than one stretch of it.
@@ -255,10 +256,13 @@ pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
         }
         let from = list.partition_point(|&it| it <= at);
         let mut others: Vec<usize> = Vec::new();
-        for &it in &list[from..] {
+        for &it in list[from..].iter().take(MOST_LOOKED_AT) {
             let before = others.last().copied().unwrap_or(at);
-            if it >= before + SHORTEST && !covered[it..it + SHORTEST].contains(&true) && others.len() < MOST_COPIES {
+            if it >= before + SHORTEST && !covered[it..it + SHORTEST].contains(&true) {
                 others.push(it);
+            }
+            if others.len() >= MOST_COPIES {
+                break;
             }
         }
         let Some((length, mut places)) = all.grow(at, &others, &covered, saved) else { continue };

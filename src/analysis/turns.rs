@@ -1,6 +1,6 @@
 //! How often loops run, and what that costs.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::program::ProgramIndex;
 use super::ranges::span::Span;
@@ -227,12 +227,13 @@ impl Counter<'_> {
             Comparison::Gt | Comparison::Ge if step < 0 => (first.last - limit.first, op == Comparison::Ge),
             Comparison::Ne if limit.is_one() && first.is_one() => {
                 let way = limit.first - first.first;
-                ((way % step == 0 && way.signum() == step.signum()).then(|| way.abs())?, false)
+                let meets = way.signum() == step.signum() && way.checked_rem(step) == Some(0);
+                (meets.then(|| way.abs())?, false)
             }
             _ => return None,
         };
-        let size = step.abs();
-        let turns = if also { way.div_euclid(size) + 1 } else { (way + size - 1).div_euclid(size) };
+        let size = step.checked_abs()?;
+        let turns = if also { way.div_euclid(size) + 1 } else { (way - 1).div_euclid(size) + 1 };
         let turns = u64::try_from(turns).unwrap_or(0);
         // A condition at the end is asked when a turn has been run; one that is asked before the counter moves lets it run
         // once more.
@@ -267,9 +268,13 @@ impl Counter<'_> {
         let model = self.model;
         let own = model.object(object);
         let start = model.statements.get(it.body.start as usize)?;
-        // Labels between are where control may come from elsewhere; that of the loop itself is none of them.
-        let own_label = model.labels.iter().filter(|label| label.statement == it.body.start).count();
-        if own_label > usize::from(it.kind == LoopKind::Jump) {
+        // Labels between are where control may come from elsewhere; that of the loop itself is none of them. They stand in the
+        // order of their statements.
+        let labels = |at: u32| {
+            let before = |end: u32| model.labels.partition_point(|label| label.statement < end);
+            before(at + 1) - before(at)
+        };
+        if labels(it.body.start) > usize::from(it.kind == LoopKind::Jump) {
             return None;
         }
         for at in (it.body.start.saturating_sub(FAR)..it.body.start).rev() {
@@ -295,7 +300,7 @@ impl Counter<'_> {
                     return None;
                 }
             }
-            if model.labels.iter().any(|label| label.statement == at) {
+            if labels(at) > 0 {
                 return None;
             }
         }
@@ -389,7 +394,7 @@ impl<'p, 'a> LoopCosts<'p, 'a> {
             for (it, total) in facts.loops.iter().zip(totals).filter(|it| it.0.parent.is_none()) {
                 sum = sum.saturating_sub(it.operations).saturating_add(total);
             }
-            let in_loops: Vec<u32> = facts.loops.iter().flat_map(|it| it.calls.iter().copied()).collect();
+            let in_loops: FxHashSet<u32> = facts.loops.iter().flat_map(|it| it.calls.iter().copied()).collect();
             for call in (0..u32::try_from(facts.calls.len()).unwrap_or(0)).filter(|it| !in_loops.contains(it)) {
                 sum = sum.saturating_add(self.called(target, call, depth + 1));
             }
