@@ -156,10 +156,7 @@ impl<'a> Walk<'a> {
             Area::Indirect => self.areas.clear(),
             _ if !object.is_fixed() && object.class == Class::Symbol => self.areas.clear(),
             // Where the parts of a symbol lie is not known, nor how large it is.
-            area if !object.is_fixed()
-                || matches!(area, Area::Symbol(_))
-                || granules(&object.footprint).is_none() =>
-            {
+            area if !object.is_fixed() || matches!(area, Area::Symbol(_)) || granules(&object.footprint).is_none() => {
                 self.areas.remove(area);
             }
             area => {

@@ -464,6 +464,8 @@ mod tests {
         assert_eq!(counts("%MW0 := 9;", "REPEAT DEC %MW0; UNTIL %MW0 <= 0 OR %M0 END_REPEAT;"), [Some(9)]);
         assert_eq!(counts("%MW0 := 0;", "REPEAT INC %MW0; UNTIL %MW0 = 7 END_REPEAT;"), [Some(7)]);
         assert_eq!(counts("%MW0 := 0;", "REPEAT INC %MW0; UNTIL %MW0 = -7 END_REPEAT;"), [None]);
+        assert_eq!(counts("%MW0 := 0;", "REPEAT %MW0 := %MW0 + 0; UNTIL %MW0 = 7 END_REPEAT;"), [None]);
+        assert_eq!(counts("%MW0 := 0;", "WHILE %MW0 < 7 DO %MW0 := %MW0 + 9; END_WHILE;"), [Some(1)]);
         assert_eq!(st("! %MW0 := 0; ! %L10: INC %MW0; ! IF %MW0 < 5 THEN JUMP %L10; END_IF;"), [Some(5)]);
         assert_eq!(
             st("! IF %M0 THEN JUMP %L10; END_IF; ! %MW0 := 0; ! %L10: INC %MW0; ! IF %MW0 < 5 THEN JUMP %L10; END_IF;"),

@@ -323,6 +323,7 @@ fn index(at: usize) -> u32 {
 /// Whether an object holds one bit, as far as is known.
 pub fn may_be_bit(object: &Object) -> bool {
     object.is_fixed()
+        && object.footprint.bits == 1
         && (object.ty == Type::Bool
             || object.ty == Type::Unknown && matches!(object.class, Class::Symbol | Class::LocalName | Class::Data))
 }
