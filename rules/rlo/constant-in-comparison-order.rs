@@ -39,11 +39,12 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
                 matches!(it, Op::Jump(_) | Op::NegateRlo | Op::BlockEndConditional | Op::CallConditional)
             });
             let beside: &[Instr<'_>] = if is_turned { &[comparison] } else { &[first, second, comparison] };
-            let stating: Vec<(TextRange, Comparison)> = near(cx.text, &comments, first.range().cover(comparison.range()))
-                .iter()
-                .filter(|it| beside.iter().any(|instr| is_beside(cx.text, instr.range(), **it)))
-                .filter_map(|it| Some((*it, stated(cx.text_of(*it), a, b)?)))
-                .collect();
+            let stating: Vec<(TextRange, Comparison)> =
+                near(cx.text, &comments, first.range().cover(comparison.range()))
+                    .iter()
+                    .filter(|it| beside.iter().any(|instr| is_beside(cx.text, instr.range(), **it)))
+                    .filter_map(|it| Some((*it, stated(cx.text_of(*it), a, b)?)))
+                    .collect();
             let [(comment, said), others @ ..] = stating.as_slice() else { continue };
             if *said != tested.mirrored() || others.iter().any(|it| it.1 != *said) {
                 continue;

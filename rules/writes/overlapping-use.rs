@@ -2,9 +2,9 @@
 
 use crate::analysis::Site;
 use crate::analysis::program::{GlobalUse, ObjectUses};
-use crate::model::sets::Sets;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Area, Class, Object, Type};
+use crate::model::sets::Sets;
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {

@@ -15,7 +15,7 @@ use super::Site;
 use super::program::ProgramIndex;
 use crate::model::UnitModel;
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
-use crate::model::object::Type;
+use crate::model::object::{Class, Type};
 use crate::model::unit::{Access, StatementKind};
 
 /// The statements of a unit, without places and names.
@@ -32,6 +32,8 @@ struct Item {
     /// End of its operands, which begin where those of the item before end.
     end: u32,
     anchor: Option<u32>,
+    /// It writes no more than a bit of local data by its address, as the ladder editor does for the operands of a call.
+    is_aside: bool,
 }
 
 /// What may be another thing in a copy.
@@ -73,7 +75,14 @@ impl Forms {
             let hash = (form.seen.len() <= LARGEST).then(|| form.hasher.finish());
             let end = u32::try_from(forms.operands.len()).unwrap_or(u32::MAX);
             let anchor = anchor.or_else(|| own.first().map(|it| it.anchor));
-            forms.items.push(Item { form: hash, end, anchor });
+            let is_aside = match statement.kind {
+                StatementKind::Assign { access, .. } => model.accesses.get(access as usize).is_some_and(|it| {
+                    let object = model.object(it.object);
+                    object.class == Class::LocalData && object.ty == Type::Bool
+                }),
+                _ => false,
+            };
+            forms.items.push(Item { form: hash, end, anchor, is_aside });
         }
         forms
     }
@@ -300,6 +309,10 @@ impl<'a> All<'a> {
         self.items.get(at).map(|it| it.0)
     }
 
+    fn is_aside(&self, at: usize) -> bool {
+        self.items.get(at).is_some_and(|&(_, forms, item)| forms.items[item].is_aside)
+    }
+
     fn operands(&self, at: usize, length: usize) -> &'a [Operand] {
         let Some(&(_, forms, item)) = self.items.get(at) else { return &[] };
         let start = item.checked_sub(1).map_or(0, |it| forms.items[it].end);
@@ -354,7 +367,7 @@ impl<'a> All<'a> {
                 goes_on
             });
             let Some((_, renaming)) = alive.first() else { break };
-            if !linked.extend(self.operands(last, 1), renaming) {
+            if !linked.extend(self.operands(last, 1), renaming, self.is_aside(last)) {
                 break;
             }
             let saves = alive.len() * linked.acting;
@@ -394,12 +407,12 @@ struct Linked {
     renamed: FxHashSet<u64>,
     same: FxHashSet<u64>,
     other_values: bool,
-    /// Statements that work on objects.
+    /// Statements that work on objects and are counted.
     acting: usize,
 }
 
 impl Linked {
-    fn extend(&mut self, operands: &[Operand], renaming: &Renaming) -> bool {
+    fn extend(&mut self, operands: &[Operand], renaming: &Renaming, is_aside: bool) -> bool {
         let objects = || operands.iter().filter(|it| it.role == Role::Object);
         self.other_values |= operands.iter().any(|it| it.role == Role::Value && !renaming.is_same(it));
         if objects().next().is_none() {
@@ -407,8 +420,9 @@ impl Linked {
             return true;
         }
         let all_same = self.renamed.is_empty() && !self.other_values;
-        let is_linked = self.acting == 0
-            || objects().any(|it| self.renamed.contains(&it.hash) || all_same && self.same.contains(&it.hash));
+        let is_first = self.renamed.is_empty() && self.same.is_empty();
+        let is_linked =
+            is_first || objects().any(|it| self.renamed.contains(&it.hash) || all_same && self.same.contains(&it.hash));
         for it in objects() {
             if renaming.is_same(it) {
                 self.same.insert(it.hash)
@@ -416,7 +430,7 @@ impl Linked {
                 self.renamed.insert(it.hash)
             };
         }
-        self.acting += 1;
+        self.acting += usize::from(!is_aside);
         is_linked
     }
 }
