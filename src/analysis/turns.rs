@@ -345,13 +345,16 @@ impl<'p, 'a> LoopCosts<'p, 'a> {
             let (totals, most) = (self.totals(unit, 0), most(unit));
             for (at, (it, &operations)) in (0..).zip(facts.loops.iter().zip(&totals)) {
                 let Some(turns) = it.turns else { continue };
-                let mut inner = (0..).zip(&facts.loops).filter(|(_, it)| it.parent == Some(at));
-                let of_inner = inner.clone().any(|(at, _): (usize, _)| totals.get(at).is_some_and(|it| *it > most));
+                // What stands in a loop comes right behind it.
+                let behind = facts.loops.iter().zip(&totals).skip(at as usize + 1);
+                let within = behind.take_while(|it| it.0.parent.is_some_and(|parent| parent >= at));
+                let inner: Vec<_> = within.filter(|it| it.0.parent == Some(at)).collect();
+                let of_inner = inner.iter().any(|it| *it.1 > most);
                 let of_called = it.calls.iter().any(|call| {
                     self.targets.get(&(unit, *call)).is_some_and(|it| self.units.get(it).is_some_and(|it| *it > most))
                 });
                 if operations > most && !of_inner && !of_called {
-                    let inner = inner.by_ref().filter_map(|(_, it)| Some((it.anchor, it.turns?))).collect();
+                    let inner = inner.into_iter().filter_map(|(it, _)| Some((it.anchor, it.turns?))).collect();
                     found.push(Costly { unit, it, turns, operations, inner });
                 }
             }

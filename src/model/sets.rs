@@ -22,3 +22,18 @@ impl Sets {
         self.0[a.max(b)] = a.min(b);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_from_both_ends() {
+        let mut sets = Sets::new(6);
+        for (a, b) in [(0, 3), (1, 2), (2, 3)] {
+            sets.join(a, b);
+        }
+        let lowest: Vec<usize> = (0..6).map(|it| sets.find(it)).collect();
+        assert_eq!(lowest, [0, 0, 0, 0, 4, 5]);
+    }
+}
