@@ -46,10 +46,10 @@ struct Operand {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Role {
     Object,
-    /// A constant, or a value that is not known.
+    /// A constant.
     Value,
-    /// A label, or the condition under which control is there.
-    Way,
+    /// What each place has for itself: a label, the condition under which control is there, a value that is not known.
+    Own,
 }
 
 /// A statement of more expressions is not compared.
@@ -67,7 +67,7 @@ impl Forms {
             }
             let mut form = Form { model, forms: &mut forms, hasher: FxHasher::default(), seen: FxHashMap::default() };
             while let Some(it) = labels.next_if(|it| it.statement <= at) {
-                form.operand(&it.name, Role::Way);
+                form.operand(&it.name, Role::Own);
                 "label".hash(&mut form.hasher);
             }
             let anchor = form.statement(&statement.kind, &own);
@@ -143,7 +143,7 @@ impl Form<'_> {
             StatementKind::Jump(at) => {
                 let jump = model.jumps.get(at as usize)?;
                 self.expr(jump.when);
-                self.operand(&jump.label, Role::Way);
+                self.operand(&jump.label, Role::Own);
                 Some(jump.anchor)
             }
             StatementKind::Return { when, how } => {
@@ -170,7 +170,7 @@ impl Form<'_> {
         let is_certain = path == Exprs::TRUE;
         is_certain.hash(&mut self.hasher);
         if !is_certain {
-            self.operand(path, Role::Way);
+            self.operand(path, Role::Own);
         }
     }
 
@@ -211,7 +211,7 @@ impl Form<'_> {
             Expr::Int(it) => self.operand(it, Role::Value),
             Expr::Float(it) => self.operand(it, Role::Value),
             Expr::Text(it) => self.operand(it, Role::Value),
-            Expr::Opaque(it) => self.operand(it, Role::Value),
+            Expr::Opaque(it) => self.operand(it, Role::Own),
             Expr::Read { object, .. } => self.object(*object),
             Expr::Edge { object, rising, .. } => {
                 rising.hash(&mut self.hasher);
@@ -279,7 +279,7 @@ pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
         for &it in &places {
             covered[it..it + length].fill(true);
         }
-        let identical = places.iter().all(|&it| all.operands(at, length) == all.operands(it, length));
+        let identical = places.iter().all(|&it| all.works_on(at, length).eq(all.works_on(it, length)));
         let places = places.into_iter().filter_map(|it| all.site(it, length)).collect();
         found.push(Repeat { length, places, identical });
     }
@@ -318,6 +318,11 @@ impl<'a> All<'a> {
         let start = item.checked_sub(1).map_or(0, |it| forms.items[it].end);
         let end = forms.items.get(item + length - 1).map_or(start, |it| it.end);
         forms.operands.get(start as usize..end as usize).unwrap_or_default()
+    }
+
+    /// The operands that copies can share.
+    fn works_on(&self, at: usize, length: usize) -> impl Iterator<Item = &'a Operand> {
+        self.operands(at, length).iter().filter(|it| it.role != Role::Own)
     }
 
     fn site(&self, at: usize, length: usize) -> Option<Site> {
@@ -432,5 +437,53 @@ impl Linked {
         }
         self.acting += usize::from(!is_aside);
         is_linked
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::facts::UnitFacts;
+    use crate::model::entity::{Entity, Family};
+    use crate::model::lower;
+    use crate::syntax::{self, Language, Mnemonics};
+
+    /// Of each repeat in listings: statements, places, and whether the operands are the same.
+    fn found(listings: &[&str]) -> Vec<(usize, usize, bool)> {
+        let language = Language::Awl(Mnemonics::German);
+        let facts: Vec<UnitFacts> = listings
+            .iter()
+            .map(|text| {
+                let parse = syntax::parse(language, text);
+                assert_eq!(parse.errors(), [], "{text}");
+                let model = lower::lower(parse.syntax(), text, Entity::Listing, language);
+                UnitFacts { forms: Some(Box::new(Forms::new(&model))), ..UnitFacts::new(&model) }
+            })
+            .collect();
+        let program = ProgramIndex::new(Family::Step7, facts.iter().collect());
+        repeats(&program, 3).into_iter().map(|it| (it.length, it.places.len(), it.identical)).collect()
+    }
+
+    #[test]
+    fn operands_that_are_the_same() {
+        let code = |label: &str, word: u32| {
+            format!(
+                "U E 0.0\nSPBN {label}\nL MW 20\nL 1\n+I\nT MW 20\nL MW 20\nT MW {word}\nL MW {word}\nT MW 40\n\
+                 {label}: NOP 0\n"
+            )
+        };
+        let other = "U E 4.0\n= A 4.0\n";
+        assert_eq!(found(&[&code("a1", 30), &(other.to_owned() + &code("b1", 30))]), [(3, 2, true)]);
+        assert_eq!(found(&[&code("a1", 30), &(other.to_owned() + &code("b1", 32))]), [(3, 2, false)]);
+    }
+
+    #[test]
+    fn operands_of_calls_do_not_count() {
+        let calls = |memory: &str| {
+            let call = format!("CALL FC 9 (IN := {memory}.0, STOP := {memory}.1)\n");
+            format!("{call}U E 0.0\n= {memory}.0\nUN E 0.1\n= {memory}.1\n{call}")
+        };
+        assert_eq!(found(&[&calls("L 0"), &calls("L 2")]), []);
+        assert_eq!(found(&[&calls("M 0"), &calls("M 2")]), [(4, 2, false)]);
     }
 }
