@@ -10,9 +10,11 @@ use structure::{Block, block};
 use plclint::analysis::facts::UnitFacts;
 use plclint::analysis::program::ProgramIndex;
 use plclint::analysis::sequences::judge::DeviationKind;
+use plclint::analysis::sequences::trace::Trace;
 use plclint::db::{self, Input};
 use plclint::lint::settings::{Folders, Overrides, Settings};
 use plclint::model::entity::Family;
+use plclint::model::expr::ObjectId;
 use plclint::model::lower;
 use plclint::source::detect::{Detected, Dialect};
 use plclint::source::entity_from_address;
@@ -230,6 +232,34 @@ fn near_misses() {
     for code in none {
         assert_eq!(claimed(&code.replace("ENDE:.NOP_0", "NOP_0").replace("SPB.ENDE", "BEB")), 0, "{code}");
     }
+}
+
+/// A word that is written, or given to a block that was not read, takes the bits in it along.
+#[test]
+fn words_change_their_bits() {
+    let still_asks = |code: &str| {
+        with_program(&[("OB1", ob(1, code))], |program| {
+            let place = |text: &str| program.objects.iter().position(|it| it.object.text == text);
+            let id = |text: &str| ObjectId(u32::try_from(place(text).expect("an object")).expect("few objects"));
+            let mut trace = Trace::of_scan(program);
+            let end = trace.end(id("M10.1"));
+            trace.mentions(end, |it| it == id("E0.0"))
+        })
+    };
+    let call = |given: &str| still_asks(&format!("U E 0.0\n= M 10.1\nCALL FC 99 (x := {given})\n"));
+    assert!(call("MW 12"));
+    assert!(!call("MW 10"));
+    assert!(!call("MD 8"));
+    assert!(!call("M 10.1"));
+    let store = |word: &str| still_asks(&format!("U E 0.0\n= L 2.1\nL MW 20\nT {word}\nU L 2.1\n= M 10.1\n"));
+    for apart in ["LW 0", "LB 3", "LD 4", "MW 30"] {
+        assert!(store(apart), "{apart}");
+    }
+    for over in ["LW 2", "LB 2", "LD 0", "LW 1"] {
+        assert!(!store(over), "{over}");
+    }
+    // Bits of a constant are known.
+    assert!(!still_asks("U E 0.0\n= L 2.1\nL 0\nT LW 2\nU L 2.1\nU E 0.0\n= M 10.1\n"));
 }
 
 fn names(steps: &[&str]) -> Vec<String> {

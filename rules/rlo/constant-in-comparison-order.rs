@@ -39,11 +39,12 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
                 matches!(it, Op::Jump(_) | Op::NegateRlo | Op::BlockEndConditional | Op::CallConditional)
             });
             let beside: &[Instr<'_>] = if is_turned { &[comparison] } else { &[first, second, comparison] };
-            let stating: Vec<(TextRange, Comparison)> = comments
-                .iter()
-                .filter(|it| beside.iter().any(|instr| is_beside(cx.text, instr.range(), **it)))
-                .filter_map(|it| Some((*it, stated(cx.text_of(*it), a, b)?)))
-                .collect();
+            let stating: Vec<(TextRange, Comparison)> =
+                near(cx.text, &comments, first.range().cover(comparison.range()))
+                    .iter()
+                    .filter(|it| beside.iter().any(|instr| is_beside(cx.text, instr.range(), **it)))
+                    .filter_map(|it| Some((*it, stated(cx.text_of(*it), a, b)?)))
+                    .collect();
             let [(comment, said), others @ ..] = stating.as_slice() else { continue };
             if *said != tested.mirrored() || others.iter().any(|it| it.1 != *said) {
                 continue;
@@ -73,6 +74,17 @@ fn order(relation: Relation) -> Option<Comparison> {
         Relation::Le => Comparison::Le,
         Relation::Eq | Relation::Ne => return None,
     })
+}
+
+/// The comments on the lines of a place, and on the line above it.
+fn near<'c>(text: &str, comments: &'c [TextRange], place: TextRange) -> &'c [TextRange] {
+    let above = text.get(..usize::from(place.start())).unwrap_or_default().rmatch_indices('\n').nth(1);
+    let start = above.map_or(0, |it| it.0);
+    let behind = text.get(usize::from(place.end())..).unwrap_or_default();
+    let end = usize::from(place.end()) + behind.find('\n').unwrap_or(behind.len());
+    let from = comments.partition_point(|it| usize::from(it.end()) <= start);
+    let to = comments.partition_point(|it| usize::from(it.start()) < end);
+    comments.get(from..to).unwrap_or_default()
 }
 
 /// Whether a comment stands behind an instruction on its line, or fills the line above it.

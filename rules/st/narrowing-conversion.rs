@@ -4,17 +4,13 @@ use rowan::TextRange;
 use rustc_hash::FxHashMap;
 
 use crate::analysis::ranges::Ranges;
-use crate::lint::{Sink, UnitCx};
+use crate::lint::{Severity, Sink, UnitCx};
 use crate::model::expr::{Expr, ExprId, Operator};
 use crate::model::object::Type;
 use crate::model::pl7_kinds::Kind;
 use crate::model::unit::StatementKind;
 use crate::syntax::pl7::ast::AssignStmt;
 use crate::syntax::{AstNode as _, SyntaxKind};
-
-/// What fits a word with its sign, and what fits its 16 bits.
-const WORDS: (i64, i64) = (i16::MIN as i64, i16::MAX as i64);
-const PATTERNS: (i64, i64) = (0, u16::MAX as i64);
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let assignments = cx.nodes(SyntaxKind::AssignStmt).filter_map(AssignStmt::cast);
@@ -50,7 +46,12 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             Expr::Call(name, _) => name == "SHR",
             _ => false,
         };
-        if span.is_within(WORDS.0, WORDS.1) || of_bits && span.is_within(PATTERNS.0, PATTERNS.1) {
+        let (least, most) = (i16::MIN.into(), if of_bits { u16::MAX.into() } else { i16::MAX.into() });
+        let (is_below, is_above) = (span.first < least, span.last > most);
+        let lets_pass = is_below && span.tells_first || is_above && span.tells_last;
+        // Who tests one side knows the other: most double words are counters and sums, which have no sign.
+        let is_tested = !lets_pass && (span.tells_first || span.tells_last);
+        if !is_below && !is_above || is_tested {
             continue;
         }
         let (target, text) = (cx.text_of(target), cx.text_of(value));
@@ -59,6 +60,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             report.label(format!("this is {}", span.first));
         } else if span.tells_first && span.tells_last {
             report.label(format!("this is {} to {}", span.first, span.last));
+        } else if !lets_pass {
+            report.label("nothing here tells how large it is").severity(Severity::Advice);
         }
     }
 }

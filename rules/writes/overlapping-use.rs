@@ -4,29 +4,26 @@ use crate::analysis::Site;
 use crate::analysis::program::{GlobalUse, ObjectUses};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Area, Class, Object, Type};
+use crate::model::sets::Sets;
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let objects = &cx.program.objects;
-    // A group: a first object and all that share memory with it or with one of the group, through conflicts.
-    let mut group_of: Vec<usize> = (0..objects.len()).collect();
-    let mut conflicts = Vec::new();
+    // A group: all objects that conflicts join, directly or through others.
+    let mut groups = Sets::new(objects.len());
+    let mut members: Vec<usize> = Vec::new();
     for &(a, b) in cx.overlaps() {
         let (a, b) = (a as usize, b as usize);
         if in_conflict(cx, &objects[a], &objects[b]) {
-            // Objects are sorted by address, so a group's first object is met before the others.
-            let group = group_of[a].min(group_of[b]);
-            group_of[a] = group;
-            group_of[b] = group;
-            conflicts.push((a, b));
+            groups.join(a, b);
+            members.extend([a, b]);
         }
     }
-    conflicts.sort_by_key(|&(a, _)| group_of[a]);
-    for group in conflicts.chunk_by(|x, y| group_of[x.0] == group_of[y.0]) {
-        let mut members: Vec<usize> = group.iter().flat_map(|&(a, b)| [a, b]).collect();
-        members.sort_unstable();
-        members.dedup();
-        report(cx, &members, sink);
+    members.sort_unstable();
+    members.dedup();
+    members.sort_by_key(|it| groups.find(*it));
+    for group in members.chunk_by(|a, b| groups.find(*a) == groups.find(*b)) {
+        report(cx, group, sink);
     }
 }
 

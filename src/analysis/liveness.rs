@@ -39,7 +39,8 @@ const MOST_WAITING: usize = 16;
 /// Conditions that are larger are not compared.
 const LONGEST: usize = 128;
 
-/// Bits of an area that one list of waiting writes covers, and the lists that one object may have.
+/// Bits of an area that one list of waiting writes covers, and the lists that one object may have: a wider one that is read
+/// reads the whole area, and one that is written overrides nothing.
 const GRANULE: u32 = 32;
 const WIDEST: u32 = 64;
 
@@ -155,7 +156,7 @@ impl<'a> Walk<'a> {
             Area::Indirect => self.areas.clear(),
             _ if !object.is_fixed() && object.class == Class::Symbol => self.areas.clear(),
             // Where the parts of a symbol lie is not known, nor how large it is.
-            area if !object.is_fixed() || matches!(area, Area::Symbol(_)) => {
+            area if !object.is_fixed() || matches!(area, Area::Symbol(_)) || granules(&object.footprint).is_none() => {
                 self.areas.remove(area);
             }
             area => {
@@ -214,7 +215,9 @@ impl<'a> Walk<'a> {
                 Expr::Text(_) => (true, false),
                 _ => (false, false),
             };
-            if value != Some(waiting.value) && !is_clear && (straight_on || !is_constant) {
+            let is_lost = value != Some(waiting.value) && !is_clear && (straight_on || !is_constant);
+            // Where control never comes by, nothing is written.
+            if is_lost && (write == Exprs::TRUE || walk.space.together(&[write]) != Verdict::Never) {
                 let local = is_local(written);
                 let by = waiting.by.clone().into_boxed_slice();
                 walk.found.push(Lost { write: waiting.access.anchor, by, local });
@@ -244,11 +247,8 @@ impl<'a> Walk<'a> {
 
     /// Everything that waits and shares memory with a place.
     fn each(&mut self, place: &Footprint, mut each: impl FnMut(&mut Self, usize)) {
-        let Some(lists) = self.areas.get(&place.area) else { return };
-        let mut found: Vec<u32> = match granules(place) {
-            Some(granules) => granules.filter_map(|it| lists.get(&it)).flatten().copied().collect(),
-            None => lists.values().flatten().copied().collect(),
-        };
+        let (Some(lists), Some(granules)) = (self.areas.get(&place.area), granules(place)) else { return };
+        let mut found: Vec<u32> = granules.filter_map(|it| lists.get(&it)).flatten().copied().collect();
         found.sort_unstable();
         found.dedup();
         for at in found {

@@ -15,7 +15,7 @@ use super::Site;
 use super::program::ProgramIndex;
 use crate::model::UnitModel;
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
-use crate::model::object::Type;
+use crate::model::object::{Class, Type};
 use crate::model::unit::{Access, StatementKind};
 
 /// The statements of a unit, without places and names.
@@ -32,6 +32,8 @@ struct Item {
     /// End of its operands, which begin where those of the item before end.
     end: u32,
     anchor: Option<u32>,
+    /// It writes no more than a bit of local data by its address, as the ladder editor does for the operands of a call.
+    is_aside: bool,
 }
 
 /// What may be another thing in a copy.
@@ -44,10 +46,10 @@ struct Operand {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Role {
     Object,
-    /// A constant, or a value that is not known.
+    /// A constant.
     Value,
-    /// A label, or the condition under which control is there.
-    Way,
+    /// What each place has for itself: a label, the condition under which control is there, a value that is not known.
+    Own,
 }
 
 /// A statement of more expressions is not compared.
@@ -65,7 +67,7 @@ impl Forms {
             }
             let mut form = Form { model, forms: &mut forms, hasher: FxHasher::default(), seen: FxHashMap::default() };
             while let Some(it) = labels.next_if(|it| it.statement <= at) {
-                form.operand(&it.name, Role::Way);
+                form.operand(&it.name, Role::Own);
                 "label".hash(&mut form.hasher);
             }
             let anchor = form.statement(&statement.kind, &own);
@@ -73,7 +75,14 @@ impl Forms {
             let hash = (form.seen.len() <= LARGEST).then(|| form.hasher.finish());
             let end = u32::try_from(forms.operands.len()).unwrap_or(u32::MAX);
             let anchor = anchor.or_else(|| own.first().map(|it| it.anchor));
-            forms.items.push(Item { form: hash, end, anchor });
+            let is_aside = match statement.kind {
+                StatementKind::Assign { access, .. } => model.accesses.get(access as usize).is_some_and(|it| {
+                    let object = model.object(it.object);
+                    object.class == Class::LocalData && object.ty == Type::Bool
+                }),
+                _ => false,
+            };
+            forms.items.push(Item { form: hash, end, anchor, is_aside });
         }
         forms
     }
@@ -134,7 +143,7 @@ impl Form<'_> {
             StatementKind::Jump(at) => {
                 let jump = model.jumps.get(at as usize)?;
                 self.expr(jump.when);
-                self.operand(&jump.label, Role::Way);
+                self.operand(&jump.label, Role::Own);
                 Some(jump.anchor)
             }
             StatementKind::Return { when, how } => {
@@ -161,7 +170,7 @@ impl Form<'_> {
         let is_certain = path == Exprs::TRUE;
         is_certain.hash(&mut self.hasher);
         if !is_certain {
-            self.operand(path, Role::Way);
+            self.operand(path, Role::Own);
         }
     }
 
@@ -202,7 +211,7 @@ impl Form<'_> {
             Expr::Int(it) => self.operand(it, Role::Value),
             Expr::Float(it) => self.operand(it, Role::Value),
             Expr::Text(it) => self.operand(it, Role::Value),
-            Expr::Opaque(it) => self.operand(it, Role::Value),
+            Expr::Opaque(it) => self.operand(it, Role::Own),
             Expr::Read { object, .. } => self.object(*object),
             Expr::Edge { object, rising, .. } => {
                 rising.hash(&mut self.hasher);
@@ -230,8 +239,9 @@ pub struct Repeat {
 /// The shortest stretch that is looked for.
 pub const SHORTEST: usize = 3;
 
-/// So many copies of one stretch are told, and a stretch has at most so many statements.
+/// So many copies of one stretch are told, out of so many places, and a stretch has at most so many statements.
 const MOST_COPIES: usize = 64;
+const MOST_LOOKED_AT: usize = 8 * MOST_COPIES;
 const LONGEST: usize = 2000;
 
 /// What stands several times in a program, if its copies are `saved` statements more than one stretch of it.
@@ -255,10 +265,13 @@ pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
         }
         let from = list.partition_point(|&it| it <= at);
         let mut others: Vec<usize> = Vec::new();
-        for &it in &list[from..] {
+        for &it in list[from..].iter().take(MOST_LOOKED_AT) {
             let before = others.last().copied().unwrap_or(at);
-            if it >= before + SHORTEST && !covered[it..it + SHORTEST].contains(&true) && others.len() < MOST_COPIES {
+            if it >= before + SHORTEST && !covered[it..it + SHORTEST].contains(&true) {
                 others.push(it);
+            }
+            if others.len() >= MOST_COPIES {
+                break;
             }
         }
         let Some((length, mut places)) = all.grow(at, &others, &covered, saved) else { continue };
@@ -266,7 +279,7 @@ pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
         for &it in &places {
             covered[it..it + length].fill(true);
         }
-        let identical = places.iter().all(|&it| all.operands(at, length) == all.operands(it, length));
+        let identical = places.iter().all(|&it| all.works_on(at, length).eq(all.works_on(it, length)));
         let places = places.into_iter().filter_map(|it| all.site(it, length)).collect();
         found.push(Repeat { length, places, identical });
     }
@@ -296,11 +309,20 @@ impl<'a> All<'a> {
         self.items.get(at).map(|it| it.0)
     }
 
+    fn is_aside(&self, at: usize) -> bool {
+        self.items.get(at).is_some_and(|&(_, forms, item)| forms.items[item].is_aside)
+    }
+
     fn operands(&self, at: usize, length: usize) -> &'a [Operand] {
         let Some(&(_, forms, item)) = self.items.get(at) else { return &[] };
         let start = item.checked_sub(1).map_or(0, |it| forms.items[it].end);
         let end = forms.items.get(item + length - 1).map_or(start, |it| it.end);
         forms.operands.get(start as usize..end as usize).unwrap_or_default()
+    }
+
+    /// The operands that copies can share.
+    fn works_on(&self, at: usize, length: usize) -> impl Iterator<Item = &'a Operand> {
+        self.operands(at, length).iter().filter(|it| it.role != Role::Own)
     }
 
     fn site(&self, at: usize, length: usize) -> Option<Site> {
@@ -350,7 +372,7 @@ impl<'a> All<'a> {
                 goes_on
             });
             let Some((_, renaming)) = alive.first() else { break };
-            if !linked.extend(self.operands(last, 1), renaming) {
+            if !linked.extend(self.operands(last, 1), renaming, self.is_aside(last)) {
                 break;
             }
             let saves = alive.len() * linked.acting;
@@ -390,12 +412,12 @@ struct Linked {
     renamed: FxHashSet<u64>,
     same: FxHashSet<u64>,
     other_values: bool,
-    /// Statements that work on objects.
+    /// Statements that work on objects and are counted.
     acting: usize,
 }
 
 impl Linked {
-    fn extend(&mut self, operands: &[Operand], renaming: &Renaming) -> bool {
+    fn extend(&mut self, operands: &[Operand], renaming: &Renaming, is_aside: bool) -> bool {
         let objects = || operands.iter().filter(|it| it.role == Role::Object);
         self.other_values |= operands.iter().any(|it| it.role == Role::Value && !renaming.is_same(it));
         if objects().next().is_none() {
@@ -403,8 +425,9 @@ impl Linked {
             return true;
         }
         let all_same = self.renamed.is_empty() && !self.other_values;
-        let is_linked = self.acting == 0
-            || objects().any(|it| self.renamed.contains(&it.hash) || all_same && self.same.contains(&it.hash));
+        let is_first = self.renamed.is_empty() && self.same.is_empty();
+        let is_linked =
+            is_first || objects().any(|it| self.renamed.contains(&it.hash) || all_same && self.same.contains(&it.hash));
         for it in objects() {
             if renaming.is_same(it) {
                 self.same.insert(it.hash)
@@ -412,7 +435,55 @@ impl Linked {
                 self.renamed.insert(it.hash)
             };
         }
-        self.acting += 1;
+        self.acting += usize::from(!is_aside);
         is_linked
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::facts::UnitFacts;
+    use crate::model::entity::{Entity, Family};
+    use crate::model::lower;
+    use crate::syntax::{self, Language, Mnemonics};
+
+    /// Of each repeat in listings: statements, places, and whether the operands are the same.
+    fn found(listings: &[&str]) -> Vec<(usize, usize, bool)> {
+        let language = Language::Awl(Mnemonics::German);
+        let facts: Vec<UnitFacts> = listings
+            .iter()
+            .map(|text| {
+                let parse = syntax::parse(language, text);
+                assert_eq!(parse.errors(), [], "{text}");
+                let model = lower::lower(parse.syntax(), text, Entity::Listing, language);
+                UnitFacts { forms: Some(Box::new(Forms::new(&model))), ..UnitFacts::new(&model) }
+            })
+            .collect();
+        let program = ProgramIndex::new(Family::Step7, facts.iter().collect());
+        repeats(&program, 3).into_iter().map(|it| (it.length, it.places.len(), it.identical)).collect()
+    }
+
+    #[test]
+    fn operands_that_are_the_same() {
+        let code = |label: &str, word: u32| {
+            format!(
+                "U E 0.0\nSPBN {label}\nL MW 20\nL 1\n+I\nT MW 20\nL MW 20\nT MW {word}\nL MW {word}\nT MW 40\n\
+                 {label}: NOP 0\n"
+            )
+        };
+        let other = "U E 4.0\n= A 4.0\n";
+        assert_eq!(found(&[&code("a1", 30), &(other.to_owned() + &code("b1", 30))]), [(3, 2, true)]);
+        assert_eq!(found(&[&code("a1", 30), &(other.to_owned() + &code("b1", 32))]), [(3, 2, false)]);
+    }
+
+    #[test]
+    fn operands_of_calls_do_not_count() {
+        let calls = |memory: &str| {
+            let call = format!("CALL FC 9 (IN := {memory}.0, STOP := {memory}.1)\n");
+            format!("{call}U E 0.0\n= {memory}.0\nUN E 0.1\n= {memory}.1\n{call}")
+        };
+        assert_eq!(found(&[&calls("L 0"), &calls("L 2")]), []);
+        assert_eq!(found(&[&calls("M 0"), &calls("M 2")]), [(4, 2, false)]);
     }
 }

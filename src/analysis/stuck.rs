@@ -83,17 +83,20 @@ impl Stuck {
         let mut circles: Vec<(Vec<usize>, FxHashSet<Node>)> = Vec::new();
         for (it, steps) in open {
             let asked: Vec<Node> = net.asked_of(&part.component, it).collect();
-            let of = circles.iter_mut().find(|circle| {
+            // It may join circles that nothing joined before.
+            let (of, apart): (Vec<_>, Vec<_>) = circles.into_iter().partition(|circle| {
                 let asks = |other: &usize| net.asked_of(&part.component, *other).any(|it| steps.contains(&it));
                 asked.iter().any(|it| circle.1.contains(it)) || circle.0.iter().any(asks)
             });
-            match of {
-                Some(circle) => {
-                    circle.0.push(it);
-                    circle.1.extend(steps);
-                }
-                None => circles.push((vec![it], steps)),
+            circles = apart;
+            let (mut waiting, mut behind) = (Vec::new(), FxHashSet::default());
+            for circle in of {
+                waiting.extend(circle.0);
+                behind.extend(circle.1);
             }
+            waiting.push(it);
+            behind.extend(steps);
+            circles.push((waiting, behind));
         }
         Self { causes, circles: circles.into_iter().map(|it| it.0).collect(), behind: explained }
     }

@@ -1,6 +1,6 @@
 //! How often loops run, and what that costs.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::program::ProgramIndex;
 use super::ranges::span::Span;
@@ -227,12 +227,13 @@ impl Counter<'_> {
             Comparison::Gt | Comparison::Ge if step < 0 => (first.last - limit.first, op == Comparison::Ge),
             Comparison::Ne if limit.is_one() && first.is_one() => {
                 let way = limit.first - first.first;
-                ((way % step == 0 && way.signum() == step.signum()).then(|| way.abs())?, false)
+                let meets = way.signum() == step.signum() && way.checked_rem(step) == Some(0);
+                (meets.then(|| way.abs())?, false)
             }
             _ => return None,
         };
-        let size = step.abs();
-        let turns = if also { way.div_euclid(size) + 1 } else { (way + size - 1).div_euclid(size) };
+        let size = step.checked_abs()?;
+        let turns = if also { way.div_euclid(size) + 1 } else { (way - 1).div_euclid(size) + 1 };
         let turns = u64::try_from(turns).unwrap_or(0);
         // A condition at the end is asked when a turn has been run; one that is asked before the counter moves lets it run
         // once more.
@@ -267,9 +268,13 @@ impl Counter<'_> {
         let model = self.model;
         let own = model.object(object);
         let start = model.statements.get(it.body.start as usize)?;
-        // Labels between are where control may come from elsewhere; that of the loop itself is none of them.
-        let own_label = model.labels.iter().filter(|label| label.statement == it.body.start).count();
-        if own_label > usize::from(it.kind == LoopKind::Jump) {
+        // Labels between are where control may come from elsewhere; that of the loop itself is none of them. They stand in the
+        // order of their statements.
+        let labels = |at: u32| {
+            let before = |end: u32| model.labels.partition_point(|label| label.statement < end);
+            before(at + 1) - before(at)
+        };
+        if labels(it.body.start) > usize::from(it.kind == LoopKind::Jump) {
             return None;
         }
         for at in (it.body.start.saturating_sub(FAR)..it.body.start).rev() {
@@ -295,7 +300,7 @@ impl Counter<'_> {
                     return None;
                 }
             }
-            if model.labels.iter().any(|label| label.statement == at) {
+            if labels(at) > 0 {
                 return None;
             }
         }
@@ -340,13 +345,16 @@ impl<'p, 'a> LoopCosts<'p, 'a> {
             let (totals, most) = (self.totals(unit, 0), most(unit));
             for (at, (it, &operations)) in (0..).zip(facts.loops.iter().zip(&totals)) {
                 let Some(turns) = it.turns else { continue };
-                let mut inner = (0..).zip(&facts.loops).filter(|(_, it)| it.parent == Some(at));
-                let of_inner = inner.clone().any(|(at, _): (usize, _)| totals.get(at).is_some_and(|it| *it > most));
+                // What stands in a loop comes right behind it.
+                let behind = facts.loops.iter().zip(&totals).skip(at as usize + 1);
+                let within = behind.take_while(|it| it.0.parent.is_some_and(|parent| parent >= at));
+                let inner: Vec<_> = within.filter(|it| it.0.parent == Some(at)).collect();
+                let of_inner = inner.iter().any(|it| *it.1 > most);
                 let of_called = it.calls.iter().any(|call| {
                     self.targets.get(&(unit, *call)).is_some_and(|it| self.units.get(it).is_some_and(|it| *it > most))
                 });
                 if operations > most && !of_inner && !of_called {
-                    let inner = inner.by_ref().filter_map(|(_, it)| Some((it.anchor, it.turns?))).collect();
+                    let inner = inner.into_iter().filter_map(|(it, _)| Some((it.anchor, it.turns?))).collect();
                     found.push(Costly { unit, it, turns, operations, inner });
                 }
             }
@@ -389,7 +397,7 @@ impl<'p, 'a> LoopCosts<'p, 'a> {
             for (it, total) in facts.loops.iter().zip(totals).filter(|it| it.0.parent.is_none()) {
                 sum = sum.saturating_sub(it.operations).saturating_add(total);
             }
-            let in_loops: Vec<u32> = facts.loops.iter().flat_map(|it| it.calls.iter().copied()).collect();
+            let in_loops: FxHashSet<u32> = facts.loops.iter().flat_map(|it| it.calls.iter().copied()).collect();
             for call in (0..u32::try_from(facts.calls.len()).unwrap_or(0)).filter(|it| !in_loops.contains(it)) {
                 sum = sum.saturating_add(self.called(target, call, depth + 1));
             }
@@ -459,6 +467,8 @@ mod tests {
         assert_eq!(counts("%MW0 := 9;", "REPEAT DEC %MW0; UNTIL %MW0 <= 0 OR %M0 END_REPEAT;"), [Some(9)]);
         assert_eq!(counts("%MW0 := 0;", "REPEAT INC %MW0; UNTIL %MW0 = 7 END_REPEAT;"), [Some(7)]);
         assert_eq!(counts("%MW0 := 0;", "REPEAT INC %MW0; UNTIL %MW0 = -7 END_REPEAT;"), [None]);
+        assert_eq!(counts("%MW0 := 0;", "REPEAT %MW0 := %MW0 + 0; UNTIL %MW0 = 7 END_REPEAT;"), [None]);
+        assert_eq!(counts("%MW0 := 0;", "WHILE %MW0 < 7 DO %MW0 := %MW0 + 9; END_WHILE;"), [Some(1)]);
         assert_eq!(st("! %MW0 := 0; ! %L10: INC %MW0; ! IF %MW0 < 5 THEN JUMP %L10; END_IF;"), [Some(5)]);
         assert_eq!(
             st("! IF %M0 THEN JUMP %L10; END_IF; ! %MW0 := 0; ! %L10: INC %MW0; ! IF %MW0 < 5 THEN JUMP %L10; END_IF;"),

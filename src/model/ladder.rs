@@ -9,6 +9,7 @@
 use rowan::TextRange;
 use rustc_hash::FxHashSet;
 
+use super::sets::Sets;
 use crate::syntax::pl7::ast::{Cell, Expr, Rung};
 use crate::syntax::pl7::ladder_words::Element;
 use crate::syntax::{AstNode as _, Language, SyntaxKind};
@@ -764,29 +765,6 @@ impl WireNames {
             self.count += 1;
             Wire(self.count - 1)
         })
-    }
-}
-
-/// Disjoint sets.
-struct Sets(Vec<usize>);
-
-impl Sets {
-    fn new(len: usize) -> Self {
-        Self((0..len).collect())
-    }
-
-    fn find(&mut self, mut at: usize) -> usize {
-        while self.0[at] != at {
-            self.0[at] = self.0[self.0[at]];
-            at = self.0[at];
-        }
-        at
-    }
-
-    /// The lower root stays.
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b)] = a.min(b);
     }
 }
 

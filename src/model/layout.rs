@@ -251,6 +251,8 @@ pub struct Layout {
     pub fields: Vec<Placed>,
     /// The size. `None` when a type is not known: only the fields before it are placed then.
     pub bits: Option<u32>,
+    /// Indices of the fields, in the order of their names.
+    by_name: Box<[u32]>,
 }
 
 /// A place in a block.
@@ -346,6 +348,14 @@ impl Layouts {
     }
 
     fn layout(&mut self, blocks: &FxHashMap<&BlockName, &DataType>, fields: &[Field], depth: usize) -> Layout {
+        let mut layout = self.placed(blocks, fields, depth);
+        let mut by_name: Vec<u32> = (0..).zip(&layout.fields).map(|it| it.0).collect();
+        by_name.sort_by(|a, b| layout.fields[*a as usize].name.cmp(&layout.fields[*b as usize].name));
+        layout.by_name = by_name.into();
+        layout
+    }
+
+    fn placed(&mut self, blocks: &FxHashMap<&BlockName, &DataType>, fields: &[Field], depth: usize) -> Layout {
         let mut layout = Layout::default();
         let mut at = 0_u32;
         let mut section = None;
@@ -417,6 +427,13 @@ fn dimensions(bounds: &[(i32, i32)], of: &Shape) -> Option<Box<[Dimension]>> {
 }
 
 impl Layout {
+    /// The first field of a name in lower case.
+    fn field(&self, name: &str) -> Option<&Placed> {
+        let of = |it: u32| self.fields.get(it as usize);
+        let at = self.by_name.partition_point(|it| of(*it).is_some_and(|it| it.name.as_str() < name));
+        self.by_name.get(at).and_then(|it| of(*it)).filter(|it| it.name == name)
+    }
+
     /// The place of a field: `poids`, `motor.speed[3]`. Neither blanks nor case matter.
     pub fn place(&self, path: &str) -> Option<Place> {
         let mut rest = path;
@@ -427,7 +444,7 @@ impl Layout {
             let end = rest.find(['.', '[']).unwrap_or(rest.len());
             let (name, behind) = rest.split_at_checked(end)?;
             let name = name.trim_matches(['#', '"', ' ']).to_lowercase();
-            let field = layout.fields.iter().find(|it| it.name == name)?;
+            let field = layout.field(&name)?;
             place.start += field.start;
             place.anchor = field.anchor;
             if depth == 0 {

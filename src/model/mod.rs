@@ -14,6 +14,7 @@ pub mod object;
 pub mod pl7_kinds;
 pub mod pl7_precedence;
 pub mod pl7_tables;
+pub mod sets;
 pub mod step_times;
 pub mod symbols;
 pub mod unit;

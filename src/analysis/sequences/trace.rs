@@ -66,7 +66,9 @@ struct Table<'a> {
     shared: FxHashMap<(&'a Footprint, Type, bool), ObjectId>,
     own: FxHashMap<(u32, &'a Footprint), ObjectId>,
     scopes: FxHashMap<(u32, Instance<'a>), u32>,
-    /// Objects of the program that share memory with one.
+    /// By scope, area and byte: the objects of a run that lie there.
+    places: FxHashMap<(u32, &'a Area, u32), Vec<ObjectId>>,
+    /// Of each object, those that share memory with it.
     neighbours: Vec<Vec<ObjectId>>,
 }
 
@@ -321,6 +323,7 @@ fn index(at: usize) -> u32 {
 /// Whether an object holds one bit, as far as is known.
 pub fn may_be_bit(object: &Object) -> bool {
     object.is_fixed()
+        && object.footprint.bits == 1
         && (object.ty == Type::Bool
             || object.ty == Type::Unknown && matches!(object.class, Class::Symbol | Class::LocalName | Class::Data))
 }
@@ -335,7 +338,14 @@ impl<'a> Table<'a> {
             neighbours[a as usize].push(ObjectId(b));
             neighbours[b as usize].push(ObjectId(a));
         }
-        Self { objects, shared, own: FxHashMap::default(), scopes: FxHashMap::default(), neighbours }
+        Self {
+            objects,
+            shared,
+            own: FxHashMap::default(),
+            scopes: FxHashMap::default(),
+            places: FxHashMap::default(),
+            neighbours,
+        }
     }
 
     fn scope(&mut self, unit: u32, instance: Instance<'a>) -> u32 {
@@ -358,8 +368,27 @@ impl<'a> Table<'a> {
         let id = *self.own.entry((scope, &object.footprint)).or_insert(next);
         if id == next {
             self.objects.push(object);
+            let neighbours = self.join(object, scope, id);
+            self.neighbours.push(neighbours);
         }
         id
+    }
+
+    /// Makes a new object of a run known to those that share memory with it, and gives these.
+    fn join(&mut self, object: &'a Object, scope: u32, id: ObjectId) -> Vec<ObjectId> {
+        let place = &object.footprint;
+        let mut found: Vec<ObjectId> = Vec::new();
+        for byte in place.start / 8..place.end().div_ceil(8) {
+            let there = self.places.entry((scope, &place.area, byte)).or_default();
+            found.extend(there.iter().filter(|it| self.objects[it.0 as usize].footprint.overlaps(place)));
+            there.push(id);
+        }
+        found.sort_unstable();
+        found.dedup();
+        for it in &found {
+            self.neighbours[it.0 as usize].push(id);
+        }
+        found
     }
 
     fn neighbours(&self, object: ObjectId) -> &[ObjectId] {
@@ -539,6 +568,7 @@ impl<'a> Runner<'_, 'a> {
                                 let value = self.trace.exprs.opaque();
                                 self.give(object, value, path);
                                 self.assigned.remove(&object);
+                                self.store_bits(object, None, path);
                             }
                         }
                     }
