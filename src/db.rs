@@ -474,13 +474,15 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Site
     let facts = program_facts(db, program);
     let skeleton = Rc::new(skeleton(db, program, &facts));
     let whole = ProgramIndex::of(skeleton.clone());
+    let key = (program.key(db).clone(), program.family(db));
+    let step = db.memory().step(key, target, &facts, &whole);
+    step.tell(&whole);
     let cx = ProgramCx::new(&whole, settings, &target);
     let mut ran = run_program_rules(&cx, |it| matches!(it, Check::Program(_)));
-    let step = db.memory().step((program.key(db).clone(), program.family(db)), target, &facts, &skeleton);
     let part = step.part(&skeleton);
     let part = part.as_ref().map(|it| ProgramCx::new(it, settings, &target));
     let of_objects = run_program_rules(part.as_ref().unwrap_or(&cx), |it| matches!(it, Check::Object(_)));
-    let of_objects = db.memory().keep(step, of_objects, || whole.summary().clone());
+    let of_objects = db.memory().keep(step, of_objects, || whole.summary());
     ran.findings.extend(of_objects.findings);
     ran.failed.extend(of_objects.failed);
     ran

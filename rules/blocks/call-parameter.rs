@@ -116,8 +116,8 @@ fn unknown_symbols(program: &ProgramIndex<'_>, sink: &mut Sink<'_, Site>) {
             BlockName::Number(..) => None,
         },
     };
-    let blocks: FxHashSet<_> = program.objects.iter().filter_map(|it| data_block(it.object)).collect();
-    for it in &program.objects {
+    let blocks: FxHashSet<_> = program.places().filter_map(data_block).collect();
+    for it in program.objects_that(|it| it.class == Class::Symbol) {
         let quoted = it.object.text.starts_with('"');
         let Area::Symbol(name) = &it.object.footprint.area else { continue };
         // Of one with two addresses, rule N001 tells.

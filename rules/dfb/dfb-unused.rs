@@ -4,6 +4,7 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use crate::analysis::Site;
+use crate::analysis::facts::UnitFacts;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::dfb::Role;
 use crate::model::object::{Area, Class};
@@ -20,8 +21,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// Of a type whose code is understood: what the code does not name. A public variable may serve the rest of the program.
 fn items(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut outside: FxHashSet<(u32, SmolStr)> = FxHashSet::default();
-    for uses in cx.program.objects.iter().filter(|it| it.object.class == Class::Symbol) {
-        if let Some((instance, item)) = uses.object.text.split_once('.')
+    let has_public = |it: &UnitFacts| it.interface.iter().any(|it| it.items.iter().any(|it| it.role == Role::Public));
+    let is_asked = cx.program.units.iter().any(|it| has_public(it));
+    for it in cx.program.places().filter(|it| is_asked && it.class == Class::Symbol) {
+        if let Some((instance, item)) = it.text.split_once('.')
             && let Some((unit, _)) = cx.program.dfb_of(instance)
         {
             outside.insert((unit, key(item.split(['.', ':', '[']).next().unwrap_or_default())));

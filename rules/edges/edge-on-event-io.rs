@@ -13,14 +13,15 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         return;
     }
     let event = |it: &GlobalUse<'_>| program.tasks(it.unit).find(|it| matches!(it, Context::Event(_)));
+    let channels = program.objects_that(|it| matches!(it.class, Class::Input | Class::Output));
     let mut exchanged: Vec<(Group<'_>, &Object, GlobalUse<'_>)> = Vec::new();
-    for uses in program.objects.iter().filter(|it| matches!(it.object.class, Class::Input | Class::Output)) {
+    for uses in &channels {
         // An output is exchanged when the event writes it, an input when it reads it.
         let is_output = uses.object.class == Class::Output;
         let first = uses.uses.iter().find(|it| event(it).is_some() && (!is_output || it.mode.writes()));
         exchanged.extend(first.into_iter().flat_map(|it| Group::all_of(uses.object).map(|g| (g, uses.object, *it))));
     }
-    for uses in program.objects.iter().filter(|it| it.has_mode(Mode::is_edge) && it.object.ty == Type::Bool) {
+    for uses in channels.iter().filter(|it| it.has_mode(Mode::is_edge) && it.object.ty == Type::Bool) {
         let in_task =
             |it: &&GlobalUse<'_>| program.tasks(it.unit).any(|it| matches!(it, Context::Cyclic | Context::Fast));
         let Some(edge) = uses.with_mode(Mode::is_edge).find(in_task) else { continue };

@@ -1,5 +1,7 @@
 //! G029: a step that is left on a sensor alone, and whose time nothing checks.
 
+use std::cell::LazyCell;
+
 use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
@@ -21,7 +23,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if times().any(|it| !it.object.is_fixed() || it.object.ty.is_table()) {
         return;
     }
-    let flow = Flow::new(cx.program);
+    let flow = LazyCell::new(|| Flow::new(cx.program));
     for chart in cx.program.charts().iter().filter(|it| !it.has_gaps) {
         let checked: FxHashSet<u32> = times().filter_map(|it| chart.step_at(&it.object.footprint)).collect();
         let leaving = chart.leaving();

@@ -22,7 +22,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             let mut places: BTreeMap<Exchange<'_>, GlobalUse<'_>> = BTreeMap::new();
             for (object, it) in &uses {
                 for exchange in of(object) {
-                    places.entry(exchange).or_insert(**it);
+                    places.entry(exchange).or_insert(*it);
                 }
             }
             let count = u32::try_from(places.len()).unwrap_or(u32::MAX);

@@ -12,11 +12,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         Family::Pl72 => "`SY18`",
         Family::Step5 | Family::Step7 => return,
     };
-    let found = demands::unmet(
-        cx.program,
-        |it| cx.shares_writes(it),
-        |_, it| (it.what == DemandKind::Divisor).then_some(Accepted::NOT_ZERO),
-    );
+    let found = demands::unmet(cx.program, |_, it| (it.what == DemandKind::Divisor).then_some(Accepted::NOT_ZERO));
     for it in found {
         let what = it.name().map_or_else(|| "the divisor".to_owned(), |name| format!("`{name}`"));
         let (verb, severity) = if it.always { ("is", Severity::Error) } else { ("can be", Severity::Warning) };

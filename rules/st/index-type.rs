@@ -2,6 +2,7 @@
 
 use crate::analysis::Site;
 use crate::lint::{ProgramCx, Sink};
+use crate::model::expr::ObjectId;
 use crate::model::object::{Area, Class, Object, Type};
 use crate::model::unit::IndexKind;
 
@@ -25,13 +26,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let on = cx.target.controller().map_or_else(String::new, |it| format!(" on a {it}"));
     for (unit, facts) in (0..).zip(&cx.program.units) {
         for index in &facts.indexes {
-            let (fitness, text) = match index.what {
-                IndexKind::Object(object) => {
-                    let Some(it) = facts.objects.get(object.0 as usize) else { continue };
-                    (fitness(&it.object), format!("`{}`", it.object.text))
-                }
-                IndexKind::Constant(value) => (Fitness::Constant, format!("`{value}`")),
-                IndexKind::Computed => (Fitness::Nowhere, "an expression".to_owned()),
+            let object = |it: ObjectId| Some(&facts.objects.get(it.0 as usize)?.object);
+            let fitness = match index.what {
+                IndexKind::Object(it) => object(it).map_or(Fitness::Unknown, fitness),
+                IndexKind::Constant(_) => Fitness::Constant,
+                IndexKind::Computed => Fitness::Nowhere,
             };
             let fits = match fitness {
                 Fitness::Everywhere | Fitness::Unknown => true,
@@ -39,6 +38,11 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 Fitness::Nowhere => false,
             };
             if !fits {
+                let text = match index.what {
+                    IndexKind::Object(it) => format!("`{}`", object(it).map_or("", |it| &it.text)),
+                    IndexKind::Constant(value) => format!("`{value}`"),
+                    IndexKind::Computed => "an expression".to_owned(),
+                };
                 let message = format!("{text} cannot be an index{on}: an index is {wanted}");
                 sink.report(Site { unit, anchor: index.anchor }, message)
                     .note("the kinds of index are given in PL7:1077-1080");

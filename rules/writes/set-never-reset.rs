@@ -18,9 +18,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let sets: Vec<&GlobalUse<'_>> = uses.with_mode(|it| it == Mode::Set).collect();
         let resets: Vec<&GlobalUse<'_>> = uses.with_mode(|it| it == Mode::Reset).collect();
         let Some((missing, places)) = one_sided(&sets, &resets) else { continue };
-        // A table that is not cleared is Q007's affair. Sequences are what makes this a rule about the whole program.
-        let tables = cx.sequences().faults.iter().filter_map(|it| it.table.as_ref());
-        if missing == Mode::Reset && tables.into_iter().any(|it| it.contains(&uses.object.footprint)) {
+        // A table that is not cleared is Q007's affair.
+        if missing == Mode::Reset && cx.program.is_in_uncleared_table(&uses.object.footprint) {
             continue;
         }
         // What a step stores is G011's affair.

@@ -92,17 +92,14 @@ pub fn comes_with(trigger: &Object, object: &Object) -> bool {
 
 /// What each event has exchanged: the inputs that it reads and the outputs that it writes, with the subroutines that it
 /// calls. Reading an output does not exchange it.
-pub fn of_events<'u, 'a>(program: &'u ProgramIndex<'a>) -> BTreeMap<u16, Vec<(&'a Object, &'u GlobalUse<'a>)>> {
-    let mut events: BTreeMap<u16, Vec<(&'a Object, &'u GlobalUse<'a>)>> = BTreeMap::new();
+pub fn of_events<'a>(program: &ProgramIndex<'a>) -> BTreeMap<u16, Vec<(&'a Object, GlobalUse<'a>)>> {
+    let mut events: BTreeMap<u16, Vec<(&'a Object, GlobalUse<'a>)>> = BTreeMap::new();
     if !program.has_events() {
         return events;
     }
-    for uses in &program.objects {
+    for uses in program.objects_that(|it| matches!(it.class, Class::Input | Class::Output) && it.is_fixed()) {
         let object = uses.object;
-        if !matches!(object.class, Class::Input | Class::Output) || !object.is_fixed() {
-            continue;
-        }
-        for it in uses.uses.iter().filter(|it| object.class == Class::Input || it.mode.writes()) {
+        for it in uses.uses.into_iter().filter(|it| object.class == Class::Input || it.mode.writes()) {
             for task in program.tasks(it.unit) {
                 if let Context::Event(number) = task {
                     events.entry(number).or_default().push((object, it));

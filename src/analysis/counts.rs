@@ -1,5 +1,7 @@
 //! Numbers of objects against how many of them there are.
 
+use std::cell::RefCell;
+
 use rustc_hash::FxHashMap;
 
 use super::program::{ObjectUses, ProgramIndex};
@@ -21,9 +23,11 @@ pub fn name(object: &Object) -> &str {
 /// What an object is counted as, and the highest number that it takes: `%MD4` is the words 4 and 5. `None` for an object
 /// that has no such number, and for an indexed one, whose number is known when the program runs.
 pub fn number(family: Family, object: &Object) -> Option<(Counted, u32)> {
-    if !object.is_fixed() {
-        return None;
-    }
+    if object.is_fixed() { own_number(family, object) } else { None }
+}
+
+/// The same of an indexed object without its index.
+pub fn own_number(family: Family, object: &Object) -> Option<(Counted, u32)> {
     let last = object.footprint.end().saturating_sub(1);
     Some(match (family, &object.footprint.area) {
         (Family::Pl7, Area::Bits) => (Counted::Bits, last),
@@ -61,8 +65,8 @@ pub struct Numbered<'a> {
 }
 
 /// The objects of a program that are counted, in the order of their addresses.
-pub fn numbers<'a>(program: &'a ProgramIndex<'a>) -> Vec<Numbered<'a>> {
-    let number = |uses: &'a ObjectUses<'a>| {
+pub fn numbers<'p>(program: &'p ProgramIndex<'_>) -> Vec<Numbered<'p>> {
+    let number = |uses: &'p ObjectUses<'p>| {
         let (what, last) = number(program.family, uses.object)?;
         Some(Numbered { uses, what, last })
     };
@@ -70,20 +74,23 @@ pub fn numbers<'a>(program: &'a ProgramIndex<'a>) -> Vec<Numbered<'a>> {
 }
 
 /// The counts of a target, each looked up once.
-struct Ends<'t> {
+pub struct Ends<'t> {
     target: &'t Target,
-    known: FxHashMap<Counted, Option<Count>>,
+    known: RefCell<FxHashMap<Counted, Option<Count>>>,
 }
 
 impl<'t> Ends<'t> {
-    fn new(target: &'t Target) -> Self {
-        Self { target, known: FxHashMap::default() }
+    pub fn new(target: &'t Target) -> Self {
+        Self { target, known: RefCell::default() }
+    }
+
+    pub fn of(&self, what: Counted) -> Option<Count> {
+        *self.known.borrow_mut().entry(what).or_insert_with(|| self.target.count(what))
     }
 
     /// The count that a number does not fit.
-    fn passed_by(&mut self, what: Counted, number: u32) -> Option<Count> {
-        let count = *self.known.entry(what).or_insert_with(|| self.target.count(what));
-        count.filter(|it| number >= it.value)
+    fn passed_by(&self, what: Counted, number: u32) -> Option<Count> {
+        self.of(what).filter(|it| number >= it.value)
     }
 }
 
@@ -99,7 +106,7 @@ pub struct Beyond<'a> {
 /// The objects of a program that lie beyond what its controller or its configuration has: each bit, word and step, by
 /// address.
 pub fn beyond<'a>(numbers: &[Numbered<'a>], target: &Target) -> Vec<Beyond<'a>> {
-    let mut ends = Ends::new(target);
+    let ends = Ends::new(target);
     let mut found = Vec::new();
     for &Numbered { uses, what, last } in numbers.iter().filter(|it| !it.what.is_block()) {
         if let Some(count) = ends.passed_by(what, last) {
@@ -111,7 +118,7 @@ pub fn beyond<'a>(numbers: &[Numbered<'a>], target: &Target) -> Vec<Beyond<'a>> 
 
 /// The same of timers, counters and other function blocks: each block with all its items.
 pub fn beyond_blocks<'a>(numbers: &[Numbered<'a>], target: &Target) -> Vec<Beyond<'a>> {
-    let mut ends = Ends::new(target);
+    let ends = Ends::new(target);
     let mut found: Vec<(u32, Beyond<'a>)> = Vec::new();
     // Items of one block stand together, for objects are in the order of their addresses.
     for &Numbered { uses, what, last } in numbers.iter().filter(|it| it.what.is_block()) {

@@ -17,7 +17,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Site;
 use super::facts::{self, FactObject, UnitFacts, Use};
-use super::program::{Modes, ObjectUses, ProgramIndex, Skeleton, Summary, actual_mode};
+use super::program::{Access, Modes, ObjectUses, ProgramIndex, Skeleton, Summary, actual_mode};
 use crate::model::object::{Area, Footprint, Object};
 use crate::model::unit::Mode;
 
@@ -25,7 +25,7 @@ use crate::model::unit::Mode;
 const NONE: u32 = u32::MAX;
 
 /// An object of the program, whichever units use it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Known {
     /// As the unit wrote it that was the first to name it.
     fact: FactObject,
@@ -36,7 +36,7 @@ struct Known {
 }
 
 /// What a unit holds of the objects of the program.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Held {
     facts: Arc<UnitFacts>,
     /// Of each object of the unit, which one of the program it is.
@@ -47,7 +47,7 @@ struct Held {
     uses: Vec<u32>,
     /// Objects of the program that stand at one place, in pairs.
     together: Vec<(u32, u32)>,
-    /// Of the uses of objects that are [`Summary::is_addressed`].
+    /// Of the uses of objects that are [`Access::is_addressed`].
     addressed: Modes,
 }
 
@@ -79,7 +79,7 @@ impl Held {
         self.together = causes.windows(2).filter(|it| it[0].0 == it[1].0).map(|it| (it[0].1, it[1].1)).collect();
         self.addressed = Modes::default();
         for it in &facts.uses {
-            if facts.objects.get(it.object as usize).is_some_and(|it| Summary::is_addressed(&it.object)) {
+            if facts.objects.get(it.object as usize).is_some_and(|it| Access::is_addressed(&it.object)) {
                 self.addressed.insert(actual_mode(skeleton, unit, it));
             }
         }
@@ -93,7 +93,7 @@ impl Held {
 }
 
 /// The objects of a program, kept from edit to edit.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Islands {
     ids: HashTable<u32>,
     objects: Vec<Known>,
@@ -240,11 +240,18 @@ impl Islands {
         self.objects[id as usize].modes = modes;
     }
 
-    pub fn summary(&self, skeleton: &Skeleton<'_>) -> Summary {
+    /// The objects that are used, in no order.
+    pub fn used(&self) -> impl Iterator<Item = &Object> {
+        self.objects.iter().filter(|it| !it.units.is_empty()).map(|it| &it.fact.object)
+    }
+
+    /// Of the program whose facts were taken last.
+    pub fn summary(&self, program: &ProgramIndex<'_>) -> Summary {
         let used = self.objects.iter().filter(|it| !it.units.is_empty());
         let mut addressed = Modes::default();
         self.units.iter().for_each(|it| addressed.join(it.addressed));
-        Summary::new(skeleton, used.map(|it| (&it.fact.object, it.modes)), addressed)
+        let access = Access::new(program, used.map(|it| (&it.fact.object, it.modes)), addressed);
+        Summary { access, uncleared: program.uncleared().to_vec() }
     }
 
     /// Adds all objects of the islands that some of them lie on.
@@ -302,9 +309,20 @@ impl Islands {
         changed: &[u32],
         summary: Summary,
     ) -> ProgramIndex<'a> {
+        let found = self.collect(skeleton, objects.iter().copied());
+        ProgramIndex::part(skeleton.clone(), found, changed.into(), summary)
+    }
+
+    /// The objects that are wanted, in their order.
+    pub fn those<'a>(&self, skeleton: &Skeleton<'a>, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
+        let wanted = (0..).zip(&self.objects).filter(|it| !it.1.units.is_empty() && wanted(&it.1.fact.object));
+        self.collect(skeleton, wanted.map(|it| it.0))
+    }
+
+    fn collect<'a>(&self, skeleton: &Skeleton<'a>, objects: impl Iterator<Item = u32>) -> Vec<ObjectUses<'a>> {
         let rank = |unit: u32| skeleton.order.get(unit as usize).copied().unwrap_or(NONE);
-        let mut found = Vec::with_capacity(objects.len());
-        for &id in objects {
+        let mut found = Vec::with_capacity(objects.size_hint().0);
+        for id in objects {
             let mut units = self.objects[id as usize].units.clone();
             units.sort_unstable_by_key(|&(unit, at)| (rank(unit), at));
             let fact = |&(unit, at): &(u32, u32)| skeleton.units.get(unit as usize)?.objects.get(at as usize);
@@ -333,7 +351,7 @@ impl Islands {
             let (x, y) = (a.2.object, b.2.object);
             x.footprint.area.cmp(&y.footprint.area).then_with(|| (key(x), a.0, a.1).cmp(&(key(y), b.0, b.1)))
         });
-        ProgramIndex::part(skeleton.clone(), found.into_iter().map(|it| it.2).collect(), changed.into(), summary)
+        found.into_iter().map(|it| it.2).collect()
     }
 }
 

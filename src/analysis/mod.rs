@@ -36,6 +36,7 @@ pub mod repeats;
 pub mod sequences;
 pub mod size;
 pub mod stated;
+pub mod stretches;
 pub mod stuck;
 pub mod symbols;
 pub mod turns;

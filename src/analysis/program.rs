@@ -2,7 +2,9 @@
 
 use std::cell::OnceCell;
 use std::ops::Deref;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -12,12 +14,13 @@ use super::Site;
 use super::chart::{self, Actions, Chart};
 use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use super::fields;
+use super::islands::Islands;
 use super::sequences::Sequences;
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
 use crate::model::layout::{DataType, Layouts, Place};
-use crate::model::object::{Area, Class, Object};
+use crate::model::object::{Area, Class, Footprint, Object};
 use crate::model::symbols::key;
 use crate::model::unit::{Actual, Callee, Formal, Given, Mode, Pin, Section};
 use crate::syntax::Language;
@@ -157,7 +160,7 @@ impl Modes {
 }
 
 /// An object with all its uses, in execution order.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct ObjectUses<'a> {
     pub object: &'a Object,
     /// Some unit computes with its value.
@@ -233,6 +236,14 @@ impl Indirect {
 /// What can be said of all objects together, which those that judge a single one want to know.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Summary {
+    pub(super) access: Access,
+    /// Tables of steps that the program does not clear, of which rule Q007 tells.
+    pub(super) uncleared: Vec<Footprint>,
+}
+
+/// How places are used that code does not name, or not by their address.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Access {
     written: Indirect,
     read: Indirect,
     /// Of the uses by a symbol that nothing resolves and that drives no block.
@@ -241,7 +252,7 @@ pub struct Summary {
     addressed: Modes,
 }
 
-impl Summary {
+impl Access {
     /// `objects`: at least those that are [`Self::is_odd`], with the modes of their uses. `addressed`: of the uses of those
     /// that are [`Self::is_addressed`].
     pub(super) fn new<'o>(
@@ -371,7 +382,10 @@ pub struct ProgramIndex<'a> {
     pub objects: Objects<'a>,
     /// Of a part of a program, the units that have changed.
     changed: Option<Box<[u32]>>,
-    summary: OnceCell<Summary>,
+    /// What is kept of all objects from edit to edit, so that some of them cost less than all.
+    islands: OnceCell<Arc<Islands>>,
+    access: OnceCell<Access>,
+    uncleared: OnceCell<Vec<Footprint>>,
     sequences: OnceCell<Sequences<'a>>,
     sequence_charts: OnceCell<Vec<Chart<'a>>>,
 }
@@ -394,7 +408,15 @@ impl<'a> ProgramIndex<'a> {
     pub fn of(skeleton: Rc<Skeleton<'a>>) -> Self {
         let objects = Objects { of: skeleton.clone(), all: OnceCell::new() };
         let (sequences, sequence_charts) = (OnceCell::new(), OnceCell::new());
-        Self { skeleton, objects, changed: None, summary: OnceCell::new(), sequences, sequence_charts }
+        let (islands, access, uncleared) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Self { skeleton, objects, changed: None, islands, access, uncleared, sequences, sequence_charts }
+    }
+
+    /// Takes what is kept of the program as it is.
+    pub(crate) fn know(&self, islands: Arc<Islands>, summary: Summary) {
+        let Summary { access, uncleared } = summary;
+        // What it has found out itself is the same.
+        let _ = (self.islands.set(islands), self.access.set(access), self.uncleared.set(uncleared));
     }
 
     pub fn skeleton(&self) -> &Rc<Skeleton<'a>> {
@@ -409,13 +431,30 @@ impl<'a> ProgramIndex<'a> {
         summary: Summary,
     ) -> Self {
         let mut part = Self::of(skeleton);
-        (part.objects.all, part.changed, part.summary) = (objects.into(), Some(changed), summary.into());
+        (part.objects.all, part.changed) = (objects.into(), Some(changed));
+        (part.access, part.uncleared) = (summary.access.into(), summary.uncleared.into());
         part
     }
 
     /// Those of its objects that are wanted, in their order. Of a few out of many, this spares the others.
     pub fn objects_that(&self, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
-        collect(&self.skeleton, wanted)
+        match (self.objects.all.get(), self.islands.get()) {
+            (Some(all), _) => all.iter().filter(|it| wanted(it.object)).cloned().collect(),
+            (None, Some(islands)) => islands.those(&self.skeleton, wanted),
+            (None, None) => collect(&self.skeleton, wanted),
+        }
+    }
+
+    /// Its part with those objects alone.
+    pub fn those(&self, wanted: impl Fn(&Object) -> bool) -> Self {
+        Self::part(self.skeleton.clone(), self.objects_that(wanted), Box::default(), self.summary())
+    }
+
+    /// What is used, whatever for, in no order.
+    pub fn places(&self) -> impl Iterator<Item = &Object> {
+        let islands = self.islands.get();
+        let collected = islands.is_none().then(|| self.objects.iter().map(|it| it.object));
+        collected.into_iter().flatten().chain(islands.into_iter().flat_map(|it| it.used()))
     }
 
     /// The units whose own objects, which no other unit can name, are judged with the others.
@@ -430,12 +469,24 @@ impl<'a> ProgramIndex<'a> {
     }
 
     /// What is known of all objects of the program together, also where only some of them are there.
-    pub fn summary(&self) -> &Summary {
-        self.summary.get_or_init(|| {
+    pub fn summary(&self) -> Summary {
+        Summary { access: self.access().clone(), uncleared: self.uncleared().to_vec() }
+    }
+
+    fn access(&self) -> &Access {
+        self.access.get_or_init(|| {
             let mut addressed = Modes::default();
-            let all = self.objects.iter().filter(|it| Summary::is_addressed(it.object));
+            let all = self.objects.iter().filter(|it| Access::is_addressed(it.object));
             all.for_each(|it| addressed.join(it.modes));
-            Summary::new(self, self.objects.iter().map(|it| (it.object, it.modes)), addressed)
+            Access::new(self, self.objects.iter().map(|it| (it.object, it.modes)), addressed)
+        })
+    }
+
+    pub(super) fn uncleared(&self) -> &[Footprint] {
+        self.uncleared.get_or_init(|| {
+            // A rule that asks for sequences which cannot be had fails by itself.
+            let faults = || self.sequences().faults.iter().filter_map(|it| it.table.clone()).collect();
+            catch_unwind(AssertUnwindSafe(faults)).unwrap_or_default()
         })
     }
 
@@ -460,29 +511,34 @@ impl<'a> ProgramIndex<'a> {
 
     /// Whether an indexed object, which may be any of its area, is written in an area.
     pub fn is_written_by_index(&self, area: &Area) -> bool {
-        self.summary().written.areas.contains(area)
+        self.access().written.areas.contains(area)
     }
 
     /// Whether some unit writes a place computed at run time that may lie in the area: the absence of another write says
     /// nothing then.
     pub fn writes_indirectly(&self, area: &Area) -> bool {
-        self.summary().written.may_be_in(area)
+        self.access().written.may_be_in(area)
+    }
+
+    /// Whether a bit lies in a table of steps that the program does not clear.
+    pub fn is_in_uncleared_table(&self, bit: &Footprint) -> bool {
+        self.uncleared().iter().any(|it| it.contains(bit))
     }
 
     /// Whether some unit reads a place computed at run time that may lie in the area.
     pub fn reads_indirectly(&self, area: &Area) -> bool {
-        self.summary().read.may_be_in(area)
+        self.access().read.may_be_in(area)
     }
 
     /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address. The items of an
     /// instance of a DFB have none.
     pub fn has_unresolved(&self, wanted: impl Fn(Mode) -> bool) -> bool {
-        self.summary().unresolved.has(wanted)
+        self.access().unresolved.has(wanted)
     }
 
     /// Whether a use of that kind is one of an output, of memory or of data by its address.
     pub fn has_addressed(&self, wanted: impl Fn(Mode) -> bool) -> bool {
-        self.summary().addressed.has(wanted)
+        self.access().addressed.has(wanted)
     }
 
     /// Pairs of distinct objects that share memory, by index, the earlier address first.

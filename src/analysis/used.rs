@@ -1,8 +1,9 @@
 //! The memory and the blocks that a program uses, whatever it does with them.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use super::program::ProgramIndex;
+use super::stretches::Stretches;
 use crate::model::entity::BlockName;
 use crate::model::object::{Area, Footprint};
 use crate::model::unit::Callee;
@@ -10,30 +11,17 @@ use crate::model::unit::Callee;
 /// The memory and the blocks that a program uses.
 #[derive(Debug)]
 pub struct Used<'a> {
-    /// Of each area: first and last bit of each stretch, sorted, without overlaps.
-    stretches: FxHashMap<&'a Area, Vec<(u32, u32)>>,
+    memory: Stretches<'a>,
     /// Areas of which an index chooses the place.
     indexed: FxHashSet<&'a Area>,
     blocks: FxHashSet<&'a BlockName>,
 }
 
 impl<'a> Used<'a> {
-    pub fn new(program: &ProgramIndex<'a>) -> Self {
-        let blocks = blocks(program);
-        let mut used = Self { stretches: FxHashMap::default(), indexed: FxHashSet::default(), blocks };
-        // Objects are sorted by area and first bit.
-        for it in &program.objects {
-            let place = &it.object.footprint;
-            if it.object.indexed {
-                used.indexed.insert(&place.area);
-            }
-            let list = used.stretches.entry(&place.area).or_default();
-            match list.last_mut().filter(|it| place.start < it.1) {
-                Some(last) => last.1 = last.1.max(place.end()),
-                None => list.push((place.start, place.end())),
-            }
-        }
-        used
+    pub fn new(program: &'a ProgramIndex<'a>) -> Self {
+        let places = || program.places();
+        let indexed = places().filter(|it| it.indexed).map(|it| &it.footprint.area).collect();
+        Self { memory: places().map(|it| &it.footprint).collect(), indexed, blocks: blocks(program) }
     }
 
     /// Whether an area is that of a block which the program holds, calls, opens or declares data of.
@@ -43,11 +31,7 @@ impl<'a> Used<'a> {
 
     /// Whether some access shares memory with a place, or may: by an index.
     pub fn covers(&self, place: &Footprint) -> bool {
-        let overlaps = |list: &Vec<(u32, u32)>| {
-            let at = list.partition_point(|it| it.1 <= place.start);
-            list.get(at).is_some_and(|it| it.0 < place.end())
-        };
-        self.indexed.contains(&place.area) || self.stretches.get(&place.area).is_some_and(overlaps)
+        self.indexed.contains(&place.area) || self.memory.overlap(place)
     }
 }
 

@@ -42,7 +42,7 @@ struct State {
 /// What makes the next step from a state a small one.
 #[derive(Debug)]
 struct Kept {
-    islands: Islands,
+    islands: Arc<Islands>,
     /// Of each finding, the objects at its place.
     subjects: Vec<Vec<u32>>,
 }
@@ -71,17 +71,17 @@ impl Memory {
     }
 
     /// Starts from the state that is most like the program now.
-    pub(super) fn step(&self, key: Key, target: Target, facts: &[Arc<UnitFacts>], skeleton: &Skeleton<'_>) -> Step {
+    pub(super) fn step(&self, key: Key, target: Target, facts: &[Arc<UnitFacts>], program: &ProgramIndex<'_>) -> Step {
         let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner).remove(&key).unwrap_or_default();
         // A drum or a text block of PL7-2 reaches memory that no use of it names (PL72:895), and programs are small.
         let is_kept = key.1 != Family::Pl72;
         let of_target = (0..).zip(&states).filter(|it| is_kept && it.1.target == target);
-        let outline = Outline::new(skeleton);
+        let outline = Outline::new(program);
         let moved = |it: &State| it.outline.moved(&it.facts, &outline, facts);
         let mut near: Vec<(Moved, usize)> = of_target.filter_map(|(at, it)| Some((moved(it)?, at))).collect();
         near.sort_by_key(|it| it.0.units.len());
         let from = near.into_iter().find_map(|(by, at)| {
-            let (kept, moved) = states.get_mut(at)?.follow(facts, &by, skeleton)?;
+            let (kept, moved) = states.get_mut(at)?.follow(facts, &by, program)?;
             Some(From { state: states.remove(at), kept, units: by.units, moved })
         });
         if !states.is_empty() {
@@ -107,6 +107,13 @@ impl Memory {
 }
 
 impl Step {
+    /// Lets the program know what is kept of it.
+    pub(super) fn tell(&self, program: &ProgramIndex<'_>) {
+        if let Some(from) = &self.from {
+            program.know(from.kept.islands.clone(), from.state.summary.clone());
+        }
+    }
+
     /// The islands to judge anew; `None` when that is the whole program.
     pub(super) fn part<'a>(&self, skeleton: &Rc<Skeleton<'a>>) -> Option<ProgramIndex<'a>> {
         let from = self.from.as_ref()?;
@@ -121,21 +128,22 @@ impl State {
         &mut self,
         facts: &[Arc<UnitFacts>],
         by: &Moved,
-        skeleton: &Skeleton<'_>,
+        program: &ProgramIndex<'_>,
     ) -> Option<(Kept, FxHashSet<u32>)> {
-        let old = || Skeleton::new(skeleton.family, self.facts.iter().map(AsRef::as_ref).collect());
+        let old = || Skeleton::new(program.family, self.facts.iter().map(AsRef::as_ref).collect());
         let mut kept = self.kept.take().unwrap_or_else(|| {
             let islands = Islands::new(&old(), &self.facts);
             let subjects = self.ran.findings.iter().map(|it| islands.at(it.place)).collect();
-            Kept { islands, subjects }
+            Kept { islands: Arc::new(islands), subjects }
         });
-        let mut moved = kept.islands.update(skeleton, facts, &by.changed, &by.units);
-        if kept.islands.summary(skeleton) != self.summary {
-            kept.islands.update(&old(), &self.facts, &by.changed, &by.units);
+        let islands = Arc::make_mut(&mut kept.islands);
+        let mut moved = islands.update(program, facts, &by.changed, &by.units);
+        if islands.summary(program) != self.summary {
+            islands.update(&old(), &self.facts, &by.changed, &by.units);
             self.kept = Some(kept);
             return None;
         }
-        kept.islands.close(&mut moved);
+        islands.close(&mut moved);
         Some((kept, moved))
     }
 }

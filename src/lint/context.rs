@@ -191,12 +191,6 @@ impl<'a> ProgramCx<'a> {
         self.overlaps.get_or_init(|| self.program.overlaps())
     }
 
-    /// Whether something is written that shares memory with an object, given by index.
-    pub fn shares_writes(&self, object: u32) -> bool {
-        let mut neighbours = self.neighbours(object).iter().filter_map(|&it| self.program.objects.get(it as usize));
-        neighbours.any(ObjectUses::is_written)
-    }
-
     /// Other objects that share memory with an object, all by index.
     pub fn neighbours(&self, object: u32) -> &[u32] {
         self.neighbours.get_or_init(|| Neighbours::new(self.program.objects.len(), self.overlaps())).of(object)

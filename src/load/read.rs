@@ -1,13 +1,14 @@
 //! Finding and reading the files of programs.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::db::Input;
 use crate::lint::{Settings, Unread, UnreadReason};
 use crate::source::decode::{Encoding, SourceText};
-use crate::source::detect::{Detected, Dialect, FileHint, detect, load};
+use crate::source::detect::{Detected, Dialect, FileHint, Sample, detect_edited, load};
 use crate::source::walk::{self, Candidate};
 
 /// Files of a run: those to check, and those that are left out.
@@ -46,17 +47,19 @@ pub fn from_bytes(name: &str, bytes: &[u8], settings: &Settings, dialect: Dialec
     files
 }
 
-/// A file whose text is already decoded: what an editor shows.
+/// A file whose text is already decoded: what an editor shows. `sample`: that of the same text before it was edited.
 pub fn from_text(
     name: &str,
-    text: &str,
+    text: &Arc<str>,
     explicit: bool,
     settings: &Settings,
     dialect: Dialect,
+    sample: &mut Sample,
 ) -> Result<Input, Unread> {
     let hint = hint(name, explicit, settings, dialect);
-    let detected = detect(hint, text);
-    let source = SourceText { text: text.into(), encoding: Encoding::Utf8, bom: false, malformed: false, mixed: false };
+    let detected = detect_edited(hint, text, sample);
+    let source =
+        SourceText { text: text.clone(), encoding: Encoding::Utf8, bom: false, malformed: false, mixed: false };
     recognised(Input { path: name.to_owned(), source, detected })
 }
 

@@ -11,7 +11,7 @@ use crate::db::{Db as _, Input, RootDatabase, SourceFile};
 use crate::lint::settings::Overrides;
 use crate::lint::{Settings, Unread, UnreadReason};
 use crate::load::{self, Files, Loader, Source, WrongConfig};
-use crate::source::detect::{Detected, Dialect};
+use crate::source::detect::{Detected, Dialect, Sample};
 use crate::source::walk::Candidate;
 
 /// A folder of the workspace, with one configuration and one database; or the files that were opened from outside of any
@@ -31,13 +31,15 @@ pub(super) struct Root {
     relist: bool,
 }
 
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Default)]
 struct File {
     source: Option<SourceFile>,
     /// Whether it is part of the project.
     listed: bool,
     /// Whether the folder's walk found it. Others are there while they are open.
     found: bool,
+    /// By which an open document is recognised.
+    sample: Sample,
 }
 
 /// What a load brought.
@@ -185,13 +187,14 @@ impl Root {
 
     /// Takes the text of an open document. A project is a file that is no text, so that what a client shows of it is
     /// nothing that could be checked.
-    pub(super) fn show(&mut self, path: &str, text: &str) {
+    pub(super) fn show(&mut self, path: &str, text: &Arc<str>) {
         let file = self.files.entry(path.to_owned()).or_default();
         if file.listed && file.source.is_some_and(|it| it.detected(&self.db) == Detected::Stx) {
             return;
         }
         let explicit = !file.found;
-        let input = load::from_text(path, text, explicit, self.db.project().settings(&self.db), Dialect::Auto);
+        let settings = self.db.project().settings(&self.db);
+        let input = load::from_text(path, text, explicit, settings, Dialect::Auto, &mut file.sample);
         match input {
             Ok(input) => self.take(input),
             Err(_) => self.drop(path),
@@ -200,6 +203,9 @@ impl Root {
 
     /// A document is closed: what lies on the disk counts again, if anything does.
     pub(super) fn hide(&mut self, path: &str) {
+        if let Some(file) = self.files.get_mut(path) {
+            file.sample = Sample::default();
+        }
         if self.found(path) { self.read(path) } else { self.drop(path) }
     }
 

@@ -98,7 +98,8 @@ fn numbered_block(text: &str) -> Option<(BlockName, &str)> {
 /// Reads the heading of a printed STEP 5 block: `PB 10`, `FB5`, `BAUSTEIN : OB 1`, alone on its line or with what a print
 /// says of it behind (`LAE=22`).
 pub(super) fn step5_heading(line: &str) -> Option<Entity> {
-    let named = ["BAUSTEIN", "BLOCK", "BLOC", "BLOQUE"].iter().find_map(|it| {
+    let names: &[&str] = if line.starts_with(['B', 'b']) { &["BAUSTEIN", "BLOCK", "BLOC", "BLOQUE"] } else { &[] };
+    let named = names.iter().find_map(|it| {
         let rest = strip_prefix_ignore_case(line, it)?;
         rest.starts_with([' ', '\t', ':']).then(|| rest.trim_start())
     });
@@ -121,8 +122,9 @@ const STEP5_BLOCKS: [BlockKind; 7] =
 
 /// What of a line of STEP 5 stands before its comment.
 pub(super) fn step5_code(line: &str) -> &str {
-    let end = line.find(';').unwrap_or(line.len());
-    let end = line.find("//").map_or(end, |it| it.min(end));
+    let bytes = line.as_bytes();
+    let is_comment = |&at: &usize| bytes.get(at) == Some(&b';') || bytes.get(at + 1) == Some(&b'/');
+    let end = memchr::memchr2_iter(b';', b'/', bytes).find(is_comment).unwrap_or(line.len());
     line.get(..end).unwrap_or_default().trim()
 }
 

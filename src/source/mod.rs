@@ -10,6 +10,7 @@
 mod dbf;
 pub mod decode;
 pub mod detect;
+mod edit;
 mod heading;
 pub mod line_index;
 mod scan;

@@ -13,6 +13,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::detect::{Detected, Pl7Text, operands_of, pl7_text, unsupported};
+use super::edit::difference;
 use super::heading::{
     Heading, HeadingLanguage, block_end, block_header, exchange_block, listing_name, pl7_2_entity, pl7_address,
     pl7_heading, step5_code, step5_heading, strip_prefix_ignore_case, word,
@@ -85,8 +86,7 @@ pub fn resplit(
         Detected::Pasted(_) | Detected::Pl72 => true,
         _ => false,
     };
-    let changed = common_start(old.as_bytes(), new.as_bytes());
-    let changed_end = old.len() - common_end(&old.as_bytes()[changed..], &new.as_bytes()[changed..]);
+    let (changed, changed_end) = difference(old, new);
     let start = |it: &UnitSpan| usize::from(it.range.start());
     let end = |it: &UnitSpan| usize::from(it.range.end());
     let at = spans.partition_point(|it| end(it) <= changed).min(spans.len().checked_sub(1)?);
@@ -131,21 +131,6 @@ pub fn resplit(
         });
     }
     Some(result)
-}
-
-/// Number of bytes that two texts begin with, in strides that the processor compares at once.
-fn common_start(a: &[u8], b: &[u8]) -> usize {
-    const STRIDE: usize = 256;
-    let strides = a.chunks_exact(STRIDE).zip(b.chunks_exact(STRIDE)).take_while(|it| it.0 == it.1).count();
-    let at = strides * STRIDE;
-    at + a[at..].iter().zip(&b[at..]).take_while(|it| it.0 == it.1).count()
-}
-
-fn common_end(a: &[u8], b: &[u8]) -> usize {
-    const STRIDE: usize = 256;
-    let strides = a.rchunks_exact(STRIDE).zip(b.rchunks_exact(STRIDE)).take_while(|it| it.0 == it.1).count();
-    let (a, b) = (&a[..a.len() - strides * STRIDE], &b[..b.len() - strides * STRIDE]);
-    strides * STRIDE + a.iter().rev().zip(b.iter().rev()).take_while(|it| it.0 == it.1).count()
 }
 
 /// Whether the first line of code in a unit's text is what names the unit.

@@ -4,15 +4,17 @@ use rustc_hash::FxHashMap;
 
 use super::Ranges;
 use super::span::{Number, Span};
+use crate::analysis::Site;
+use crate::analysis::counts::{self, Ends};
 use crate::analysis::facts::UnitFacts;
-use crate::analysis::program::ProgramIndex;
-use crate::analysis::{Site, counts};
+use crate::analysis::program::{ObjectUses, ProgramIndex};
+use crate::analysis::stretches::Stretches;
 use crate::model::UnitModel;
 use crate::model::entity::Family;
 use crate::model::expr::{Expr, Exprs};
 use crate::model::object::{Area, Class, Object, Type};
 use crate::model::unit::{DemandKind, Mode};
-use crate::target::{Count, Counted, CountedBy, Limit, Target, pl7};
+use crate::target::{Count, Counted, CountedBy, Limit, pl7};
 
 /// A number that has to lie in a range, with what its unit knows of it. It holds no position.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -135,57 +137,72 @@ impl Accepted {
     }
 }
 
-/// The demands of a kind that are not met. `accepted` says what one takes; `None` where that is not known.
+/// The demands of a kind that are not met, in the order of the units. `accepted` says what one takes; `None` where that is
+/// not known.
 pub fn unmet<'a>(
     program: &ProgramIndex<'a>,
-    neighbours: impl Fn(u32) -> bool,
     accepted: impl Fn(&UnitFacts, &Demanded) -> Option<Accepted>,
 ) -> Vec<Unmet<'a>> {
-    let mut written = Written { program, neighbours, places: None, known: FxHashMap::default() };
     let mut found = Vec::new();
+    let mut open: Vec<(Unmet<'a>, Accepted, &'a Object)> = Vec::new();
     for (unit, &facts) in (0..).zip(&program.units) {
+        let is_run = program.sure.get(unit as usize).copied().unwrap_or(false);
         for it in &facts.demands {
             let Some(accepted) = accepted(facts, it) else { continue };
             let site = Site { unit, anchor: it.anchor };
-            if let Some((number, always)) = accepted.unmet(it.span) {
+            let unmet = |(number, always)| {
                 let because = it.span.by.map(|anchor| (Site { unit, anchor }, "it gets its value here".to_owned()));
                 let because = because.into_iter().filter(|it| it.0 != site).collect();
-                found.push(Unmet { site, facts, it, always, number, because, assumes_writes: false });
-            } else if let Some((number, because)) = written.unmet(unit, it, accepted) {
-                found.push(Unmet { site, facts, it, always: false, number, because, assumes_writes: true });
+                Unmet { site, facts, it, always, number, because, assumes_writes: false }
+            };
+            if let Some(told) = accepted.unmet(it.span) {
+                found.push(unmet(told));
+            } else if it.is_left && it.is_sure && is_run && program.complete && !program.partial {
+                let object = it.object.and_then(|it| facts.objects.get(it as usize));
+                open.extend(object.map(|it| (unmet((0, false)), accepted, &it.object)));
             }
         }
     }
+    if open.is_empty() {
+        return found;
+    }
+    let asked: Stretches<'_> = open.iter().map(|it| &it.2.footprint).collect();
+    let written = Written::new(&program.those(|it| asked.overlap(&it.footprint)));
+    for (it, accepted, _) in open {
+        if let Some((number, because)) = written.unmet(it.site.unit, it.it, accepted) {
+            found.push(Unmet { number, because, assumes_writes: true, ..it });
+        }
+    }
+    found.sort_by_key(|it| it.site);
     found
 }
 
 /// The constants that a program writes to objects that it writes nothing else to.
-struct Written<'p, 'a, N> {
-    program: &'p ProgramIndex<'a>,
-    /// Whether something is written that shares memory with an object.
-    neighbours: N,
-    /// The object of the program that each object of a unit is.
-    places: Option<FxHashMap<(u32, u32), u32>>,
-    known: FxHashMap<u32, Vec<(i64, Site)>>,
+struct Written {
+    /// Of each object of each unit, which one of `known` it is.
+    places: FxHashMap<(u32, u32), usize>,
+    known: Vec<Vec<(i64, Site)>>,
 }
 
-impl<N: Fn(u32) -> bool> Written<'_, '_, N> {
-    fn unmet(&mut self, unit: u32, it: &Demanded, accepted: Accepted) -> Option<(i64, Vec<(Site, String)>)> {
-        let program = self.program;
-        let is_run = program.sure.get(unit as usize).copied().unwrap_or(false);
-        if !(it.is_left && it.is_sure && is_run && program.complete && !program.partial) {
-            return None;
+impl Written {
+    /// `program`: its part with the objects that are asked for, and all that share memory with them.
+    fn new(program: &ProgramIndex<'_>) -> Self {
+        let objects = || program.objects.iter().enumerate();
+        let mut shares_writes = vec![false; program.objects.len()];
+        for (a, b) in program.overlaps() {
+            for (it, other) in [(a, b), (b, a)] {
+                shares_writes[it as usize] |= program.objects[other as usize].is_written();
+            }
         }
-        let places = self.places.get_or_insert_with(|| {
-            let objects = (0..).zip(&program.objects);
-            objects.flat_map(|(at, it)| it.uses.iter().map(move |it| ((it.unit, it.it.object), at))).collect()
-        });
-        let at = *places.get(&(unit, it.object?))?;
-        if !self.known.contains_key(&at) {
-            let constants = self.constants(at);
-            self.known.insert(at, constants);
-        }
-        let known = self.known.get(&at)?;
+        let places = |(at, it): (usize, &ObjectUses<'_>)| -> Vec<((u32, u32), usize)> {
+            it.uses.iter().map(|it| ((it.unit, it.it.object), at)).collect()
+        };
+        let known = objects().map(|(at, it)| if shares_writes[at] { Vec::new() } else { constants(program, it) });
+        Self { known: known.collect(), places: objects().flat_map(places).collect() }
+    }
+
+    fn unmet(&self, unit: u32, it: &Demanded, accepted: Accepted) -> Option<(i64, Vec<(Site, String)>)> {
+        let known = self.known.get(*self.places.get(&(unit, it.object?))?)?;
         let is_wrong = |value: i64| accepted.unmet(Span::exactly(value)).is_some();
         // Two writes behind the last wrong one may be the two ways of one choice, which leave nothing of it.
         if known.iter().rev().take_while(|(value, _)| !is_wrong(*value)).count() > 1 {
@@ -196,30 +213,28 @@ impl<N: Fn(u32) -> bool> Written<'_, '_, N> {
         let number = wrong.first()?.0;
         Some((number, wrong.into_iter().map(|(value, site)| (site, format!("{value} is written here"))).collect()))
     }
+}
 
-    /// None when another value may be written, or when a write that nothing passes by replaces what the others wrote.
-    fn constants(&self, at: u32) -> Vec<(i64, Site)> {
-        let Some(uses) = self.program.objects.get(at as usize) else { return Vec::new() };
-        let is_own = uses.object.class == Class::Memory
-            && uses.object.is_fixed()
-            && !self.program.writes_indirectly(&uses.object.footprint.area)
-            && !self.program.has_unresolved(|it| it.writes())
-            && !(self.neighbours)(at);
-        let mut writes = uses.with_mode(|it| it.writes() || matches!(it, Mode::Drive(_))).peekable();
-        if !is_own || writes.peek().is_none() {
-            return Vec::new();
-        }
-        let mut found = Vec::new();
-        for it in writes {
-            let is_passed_by = it.it.conditional || !self.program.sure.get(it.unit as usize).copied().unwrap_or(false);
-            match it.it.constant {
-                Some(value) if it.mode == Mode::Store && is_passed_by => found.push((value, it.site())),
-                Some(value) if it.mode == Mode::Store && found.is_empty() => found.push((value, it.site())),
-                _ => return Vec::new(),
-            }
-        }
-        found
+/// None when another value may be written, or when a write that nothing passes by replaces what the others wrote.
+fn constants(program: &ProgramIndex<'_>, uses: &ObjectUses<'_>) -> Vec<(i64, Site)> {
+    let is_own = uses.object.class == Class::Memory
+        && uses.object.is_fixed()
+        && !program.writes_indirectly(&uses.object.footprint.area)
+        && !program.has_unresolved(|it| it.writes());
+    let mut writes = uses.with_mode(|it| it.writes() || matches!(it, Mode::Drive(_))).peekable();
+    if !is_own || writes.peek().is_none() {
+        return Vec::new();
     }
+    let mut found = Vec::new();
+    for it in writes {
+        let is_passed_by = it.it.conditional || !program.sure.get(it.unit as usize).copied().unwrap_or(false);
+        match it.it.constant {
+            Some(value) if it.mode == Mode::Store && is_passed_by => found.push((value, it.site())),
+            Some(value) if it.mode == Mode::Store && found.is_empty() => found.push((value, it.site())),
+            _ => return Vec::new(),
+        }
+    }
+    found
 }
 
 /// The room that an indexed object of PL7 has.
@@ -236,26 +251,26 @@ pub struct Room {
 
 impl Room {
     /// `None` where nothing tells how many there are, or the object is beyond them by itself.
-    pub fn new(object: &Object, target: &Target) -> Option<Self> {
-        let base = Object { indexed: false, ..object.clone() };
-        let (what, count, last) = match base.footprint.area {
+    pub fn new(object: &Object, ends: &Ends<'_>) -> Option<Self> {
+        let place = &object.footprint;
+        let (what, count, last) = match place.area {
             Area::InputChannels(_) | Area::OutputChannels(_) => {
                 let Limit { value, source } = pl7::MODULE_CHANNELS;
-                (None, Count { value, by: CountedBy::Family, source }, base.footprint.end().saturating_sub(1))
+                (None, Count { value, by: CountedBy::Family, source }, place.end().saturating_sub(1))
             }
             _ => {
-                let (what, last) = counts::number(Family::Pl7, &base)?;
-                (Some(what), target.count(what)?, last)
+                let (what, last) = counts::own_number(Family::Pl7, object)?;
+                (Some(what), ends.of(what)?, last)
             }
         };
         let is_step = what.is_some_and(|it| matches!(it, Counted::Steps | Counted::MacroSteps));
-        let in_words = matches!(base.footprint.area, Area::Words | Area::Constants | Area::StepTimes);
+        let in_words = matches!(place.area, Area::Words | Area::Constants | Area::StepTimes);
         // Of the steps of a macro-step, nothing tells where they end.
-        if last >= count.value || is_step && pl7_macro(&base) {
+        if last >= count.value || is_step && pl7_macro(object) {
             return None;
         }
         let unit = if in_words { 16 } else { 1 };
-        let own = (i64::from(base.footprint.start) / unit, last.into());
+        let own = (i64::from(place.start) / unit, last.into());
         Some(Self { what, own, step: step_bits(object)? / unit, count })
     }
 

@@ -1,6 +1,8 @@
 //! Whether it is worth while to follow a scan: most programs set and reset bits, and few of them hand an activity over.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use std::hash::BuildHasher as _;
+
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 use super::code::{Ask, CodeFacts, How};
 use crate::analysis::facts::UnitFacts;
@@ -40,10 +42,21 @@ pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
         return true;
     }
     let stores = |it: &&Ask| matches!(it.how, How::Set | How::Reset);
+    // Of most bits, it is seen at once that they are not both set and reset.
+    let mut seen = [Marks::new(), Marks::new()];
+    for (unit, facts, code) in all() {
+        for it in code.asks.iter().filter(stores) {
+            seen[usize::from(it.how == How::Set)].insert(bit(unit, facts, it.object));
+        }
+    }
+    let may_be_both = |it: &Bit| seen.iter().all(|seen| seen.may_have(it));
     let mut given: FxHashMap<Bit, [bool; 2]> = FxHashMap::default();
     for (unit, facts, code) in all() {
         for it in code.asks.iter().filter(stores) {
-            given.entry(bit(unit, facts, it.object)).or_default()[usize::from(it.how == How::Set)] = true;
+            let bit = bit(unit, facts, it.object);
+            if bit == Bit::Open || may_be_both(&bit) {
+                given.entry(bit).or_default()[usize::from(it.how == How::Set)] = true;
+            }
         }
     }
     let steps: FxHashSet<Bit> =
@@ -102,6 +115,32 @@ pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
         }
     }
     false
+}
+
+/// A set of bits that may say of others that they are in it.
+struct Marks(Box<[u64]>);
+
+impl Marks {
+    const WORDS: usize = 1 << 11;
+
+    fn new() -> Self {
+        Self(vec![0; Self::WORDS].into())
+    }
+
+    fn place(bit: &Bit) -> (usize, u64) {
+        let hash = FxBuildHasher.hash_one(bit);
+        ((hash >> 6) as usize % Self::WORDS, 1 << (hash % 64))
+    }
+
+    fn insert(&mut self, bit: Bit) {
+        let (word, mark) = Self::place(&bit);
+        self.0[word] |= mark;
+    }
+
+    fn may_have(&self, bit: &Bit) -> bool {
+        let (word, mark) = Self::place(bit);
+        self.0[word] & mark != 0
+    }
 }
 
 fn bit(unit: u32, facts: &UnitFacts, object: u32) -> Bit {

@@ -21,6 +21,12 @@ pub(crate) struct Row {
 /// Reads a line, without its end. `None` if it names no operand and symbol, in this order.
 pub(crate) fn row(line: &str) -> Option<Row> {
     let is_break = |it: char| it.is_control();
+    // Nearly all lines that are no row end here.
+    let first = line.trim_start_matches(|it: char| is_break(it) || it.is_whitespace());
+    let letters = first.bytes().take_while(u8::is_ascii_alphabetic).count();
+    if !first.starts_with(|it: char| it.is_ascii_digit()) && !super::lexer::is_area(&first[..letters]) {
+        return None;
+    }
     let by_blanks = !line.contains(is_break);
     let text = |field: &Range<usize>| line.get(field.clone()).unwrap_or_default();
     let mut at = 0;

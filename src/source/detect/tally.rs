@@ -1,0 +1,741 @@
+//! Counts of the lines of a text by what they look like.
+
+use super::super::heading::{
+    HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, step5_code, step5_heading,
+    strip_prefix_ignore_case, word,
+};
+use super::{Detected, Extension, Pl7Text, unsupported};
+use crate::model::entity::{BlockKind, BlockName, Entity, Family};
+use crate::model::object;
+use crate::syntax::pl7::ladder_words;
+use crate::syntax::step5::symbols;
+
+/// Whether a line declares a variable, with an address or a type.
+fn is_variable(line: &str) -> bool {
+    let (name, rest) = word(line);
+    let rest = rest.trim_start();
+    let address = strip_prefix_ignore_case(rest, "AT ").map(str::trim_start);
+    !name.is_empty()
+        && (rest.starts_with(':') || address.is_some_and(|it| it.starts_with('%') || declared_by_pl7_2(it)))
+}
+
+/// Whether a declaration, behind its `AT`, has an address that PL7-2 alone has: `B3`, `I0,05`.
+fn declared_by_pl7_2(address: &str) -> bool {
+    let end = address.find(|it: char| it.is_whitespace() || matches!(it, ':' | ';' | '(')).unwrap_or(address.len());
+    let address = address.get(..end.min(LONGEST_PL7_2)).unwrap_or_default();
+    !address.starts_with('%') && object::pl72::class_of(address).is_some_and(|it| it != object::Class::Fault)
+}
+
+/// Of this many lines of STEP 5 that STEP 7 has too, one is its own at least: the end of a segment, a call.
+const STEP5_SHARE: u32 = 16;
+
+/// Counts of the lines of a text by what they look like. Comments and empty lines are not counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Tally {
+    pub(super) lines: u32,
+    /// STEP 7 instructions with an operand of the right shape, or none where none is due.
+    pub(super) step7: u32,
+    /// The same with an operand that may be a symbol without quotes.
+    step7_symbols: u32,
+    /// PL7 instructions in IL; the same in ST.
+    pub(super) il: u32,
+    pub(super) st: u32,
+    /// Lines with something that only PL7 has: `%MW10`, `%L5:`, `!` before a sentence.
+    pub(super) pl7: u32,
+    /// Lines with something that only PL7-2 has: `I0,05`, `T0,D`, `W1 -> W2`.
+    pub(super) pl7_2: u32,
+    /// Lines with an object that PL7-2 does not have, by its form: `%M5`, `%I1.0`.
+    pub(super) not_pl7_2: u32,
+    /// Headings of pasted PL7 text, by language.
+    headings_il: u32,
+    headings_st: u32,
+    headings_ld: u32,
+    headings_other: u32,
+    /// Headings of PL7-2 text, in any language; the others do not count them.
+    headings_pl7_2: u32,
+    /// Exchange file blocks, and those among them that no other kind of file has.
+    pub(super) blocks: u32,
+    own_blocks: u32,
+    /// Headers and ends of STEP 7 blocks.
+    pub(super) block_headers: u32,
+    block_ends: u32,
+    /// Headers that a DFB type of PL7 has as well as a block of others: `FUNCTION_BLOCK Cpt`.
+    dfb_headers: u32,
+    /// Lines that in a function block only PL7 has: its types, its statements on bits.
+    dfb: u32,
+    /// Declarations and other lines that are code in a STEP 7 block but mean nothing elsewhere.
+    declarations: u32,
+    /// Those among them that no other vendor's block has: `BEGIN`, `NETWORK`.
+    step7_words: u32,
+    /// Statements of structured languages: assignments in code blocks, IF, CASE.
+    scl: u32,
+    /// The lines after the last header belong to a code block, not to data.
+    pub(super) in_code_block: bool,
+    /// Declaration sections and program units of IEC 61131-3.
+    pub(super) iec: u32,
+    /// `Pump AT %M0 : EBOOL;`
+    pub(super) variables: u32,
+    /// Words that frame rungs, and elements of them.
+    pub(super) rung: u32,
+    cells: u32,
+    /// Words of charts, and those among them that only the pages of PL7 have.
+    chart: u32,
+    pages: u32,
+    /// Lines of charts that start with a word which other texts have too.
+    chart_words: u32,
+    /// Those among them that begin a step.
+    steps: u32,
+    /// Words of S7-GRAPH.
+    graph: u32,
+    step5: u32,
+    /// Lines of a symbol table, and those of one of STEP 5.
+    pub(super) symbols: u32,
+    /// Those among them that name a block which only STEP 5 has.
+    pub(super) step5_blocks: u32,
+    /// Lines of a data interchange file: the words of its header, and marks of its rows.
+    interchange: u32,
+    pub(super) symbols_step5: u32,
+    /// Natural language.
+    pub(super) prose: u32,
+    /// The text starts like XML, HTML or JSON.
+    pub(super) markup: bool,
+}
+
+impl Tally {
+    /// Of a text that starts so.
+    pub(super) fn of_start(text: &str) -> Self {
+        Self { markup: text.trim_start().starts_with(['<', '{']), ..Self::default() }
+    }
+
+    /// Of lines behind others.
+    pub(super) fn behind(in_code_block: bool) -> Self {
+        Self { in_code_block, ..Self::default() }
+    }
+
+    /// Counts what a line, as [`Lines`] cuts it, has besides blanks and comments. A line comment is none in PL7, but no PL7
+    /// text has `//` outside of comments.
+    pub(super) fn add_line(&mut self, code: &str) {
+        let code = before_line_comment(code).trim();
+        // Parentheses and the dots of an omission alone mean nothing.
+        // A semicolon starts a comment of STEP 5.
+        if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) && !(code.starts_with(';') && code.len() > 1) {
+            self.add(code);
+        }
+    }
+
+    /// Goes on with what was counted behind it.
+    pub(super) fn join(&mut self, behind: &Self) {
+        macro_rules! sum {
+            ($($count:ident)*) => {
+                let Self { $($count,)* in_code_block, markup: _ } = *behind;
+                $(self.$count += $count;)*
+                self.in_code_block = in_code_block;
+            };
+        }
+        sum! {
+            lines step7 step7_symbols il st pl7 pl7_2 not_pl7_2 headings_il headings_st headings_ld
+            headings_other headings_pl7_2 blocks own_blocks block_headers block_ends dfb_headers dfb
+            declarations step7_words scl iec variables rung cells chart pages chart_words steps graph step5
+            symbols step5_blocks interchange symbols_step5 prose
+        }
+    }
+
+    fn add(&mut self, line: &str) {
+        self.lines += 1;
+        let of_step5 = is_step5_row(line);
+        self.symbols += u32::from(of_step5 || is_symbol_row(line));
+        self.step5_blocks += u32::from(of_step5);
+        self.interchange += u32::from(matches!(line, "TABLE" | "VECTORS" | "TUPLES" | "BOT"));
+        self.symbols_step5 += u32::from(symbols::row(line).is_some());
+        if let Some((block, _)) = exchange_block(line) {
+            self.blocks += 1;
+            self.own_blocks += u32::from(matches!(block, "[SOURCE_UNIT]" | "[DATA_UNIT]"));
+        } else if let Some(heading) = pl7_heading(line) {
+            match heading.language {
+                _ if heading.pl7_2 => self.headings_pl7_2 += 1,
+                HeadingLanguage::Il => self.headings_il += 1,
+                HeadingLanguage::St => self.headings_st += 1,
+                HeadingLanguage::Ladder => self.headings_ld += 1,
+                HeadingLanguage::Grafcet => self.headings_other += 1,
+            }
+        } else if let Some(block) = block_header(line) {
+            self.block_headers += 1;
+            self.dfb_headers += u32::from(is_dfb_header(&block, line));
+            self.in_code_block = !matches!(block.block_kind(), Some(BlockKind::Db | BlockKind::Udt));
+        } else if block_end(line).is_some() {
+            self.block_ends += 1;
+        } else {
+            self.add_code(line);
+        }
+    }
+
+    fn add_code(&mut self, line: &str) {
+        let has_object = has_pl7_object(line);
+        let is_pl7 = line.starts_with('!') || has_object;
+        let code = strip_pl7_label(line.strip_prefix('!').unwrap_or(line).trim_start());
+        let first = word(code).0.to_ascii_uppercase();
+        let first = first.as_str();
+        self.pl7 += u32::from(is_pl7);
+        self.add_operands(line, has_object);
+        self.dfb += u32::from(is_dfb_line(code, first));
+        self.variables += u32::from(is_variable(code));
+        match pl7_statement(code, first, is_pl7) {
+            Some(Pl7Text::Il) => self.il += 1,
+            Some(Pl7Text::St) => {
+                self.st += 1;
+                self.scl += u32::from(self.in_code_block);
+            }
+            Some(Pl7Text::Ld | Pl7Text::Gr7 | Pl7Text::Sfc) | None => {}
+        }
+        match first {
+            "RUNG" | "END_RUNG" => self.rung += 1,
+            // Words without an underscore are words of other languages too.
+            _ if first.contains('_') && ladder_words::lookup(first).is_some() => {
+                self.rung += 1;
+                self.cells += 1;
+            }
+            "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK"
+            | "SOURCE_CONNECTOR" | "DEST_CONNECTOR" => {
+                self.chart += 1;
+                self.pages += 1;
+            }
+            "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" | "IN_STEP" | "OUT_STEP" => self.chart += 1,
+            "STEP" | "TRANSITION" | "ACTION" | "END_ACTION" | "PAGE" if is_chart_line(code, first) => {
+                self.chart_words += 1;
+                self.steps += u32::from(first == "STEP");
+            }
+            "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
+            "VAR_GLOBAL" | "PROGRAM" | "END_PROGRAM" | "CONFIGURATION" | "VAR_EXTERNAL" => self.iec += 1,
+            "VAR" | "VAR_INPUT" | "VAR_OUTPUT" | "VAR_IN_OUT" | "END_VAR" => {
+                self.iec += 1;
+                self.declarations += 1;
+            }
+            "VAR_TEMP" | "STRUCT" | "END_STRUCT" | "BEGIN" | "NETWORK" | "TITLE" | "VERSION" | "AUTHOR" | "FAMILY"
+            | "KNOW_HOW_PROTECT" => {
+                self.declarations += 1;
+                self.step7_words += 1;
+            }
+            "IF" | "ELSIF" | "ELSE" | "END_IF" | "CASE" | "END_CASE" | "FOR" | "END_FOR" | "WHILE" | "END_WHILE"
+            | "REPEAT" | "END_REPEAT" | "REGION" => self.scl += 1,
+            _ if is_step5(code) => self.step5 += 1,
+            _ if is_step7_instruction(code) => self.step7 += 1,
+            _ if is_step7_with_symbol(code) => self.step7_symbols += 1,
+            _ if is_declaration(code) => self.declarations += 1,
+            _ if !is_pl7 && is_prose(code) => self.prose += 1,
+            _ => {}
+        }
+    }
+
+    /// `has_object`: [`has_pl7_object`].
+    pub(super) fn add_operands(&mut self, line: &str, has_object: bool) {
+        self.pl7_2 += u32::from(has_pl7_2_object(line));
+        self.not_pl7_2 += u32::from(has_object && has_object_of_pl7_alone(line));
+    }
+
+    /// Whether ladder and charts are PL7-2's: most of their operands say so, or where they say nothing, the configuration.
+    pub(super) fn is_pl7_2(&self, configured: Option<Family>) -> bool {
+        self.pl7_2 > self.not_pl7_2 || self.not_pl7_2 == 0 && configured == Some(Family::Pl72)
+    }
+
+    /// Whether the text is a symbol table of STEP 7. In the data interchange format a row is many lines.
+    pub(super) fn is_symbols(&self) -> bool {
+        self.symbols * 2 > self.lines || self.interchange > 2
+    }
+
+    pub(super) fn is_exchange(&self) -> bool {
+        self.own_blocks > 0 || self.blocks > 1
+    }
+
+    /// Whether steps or pages are there. A step may begin and end on one line.
+    pub(super) fn has_chart(&self) -> bool {
+        self.chart + self.steps > 0
+    }
+
+    pub(super) fn headings(&self) -> u32 {
+        self.headings_il + self.headings_st + self.headings_ld + self.headings_other
+    }
+
+    /// Lines that are code of a dialect that is read.
+    pub(super) fn code_lines(&self) -> u32 {
+        self.step7 + self.il + self.st
+    }
+
+    /// What a text is that is convincing by itself. Neither prose with listings in it nor the source of another
+    /// language is.
+    pub(super) fn prove(&self) -> Option<Detected> {
+        let Self { lines, prose, .. } = *self;
+        if lines == 0 || self.markup {
+            return None;
+        }
+        // A document may show a whole block or section between its paragraphs.
+        if prose * 5 > lines {
+            return None;
+        }
+        if self.block_headers > 0 && self.declarations + self.block_ends + self.step7 > 0 {
+            let of_step7 = self.step7_words + self.step7 + self.graph + self.step5;
+            let is_open = self.dfb_headers == self.block_headers && of_step7 == 0;
+            return Some(if is_open && self.dfb + self.pl7 + self.cells + self.headings() > 0 {
+                Detected::Pasted(self.pl7_text(Extension::Other))
+            } else if is_open && self.scl + self.st > 0 {
+                Detected::Unsupported { what: unsupported::IEC }
+            } else if self.graph > 0 && self.chart + self.graph > 1 {
+                Detected::Unsupported { what: unsupported::GRAPH }
+            } else if self.scl > 1 && self.step7 * 4 < self.scl {
+                Detected::Unsupported { what: unsupported::SCL }
+            } else {
+                Detected::Step7
+            });
+        }
+        // In a text with headings of both, each unit says what it is.
+        if self.headings_pl7_2 > 0 && self.headings() == 0 {
+            return Some(Detected::Pl72);
+        }
+        if self.headings() > 0 && self.pl7 + self.il + self.st + self.rung + self.chart > 0 {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
+        let of_step5 = self.step5 + self.step7 + self.step7_symbols;
+        let is_enough = self.step5 > 1 || self.step5 == 1 && of_step5 == lines && lines > 2;
+        if is_enough && of_step5 * 2 > lines && self.step5 * STEP5_SHARE >= self.step7 {
+            return Some(Detected::Step5);
+        }
+        let most = |count: u32| count * 5 >= lines * 3;
+        let enough = |count: u32| count > 2 || count > 1 && count == lines;
+        if self.rung > 1 && self.cells > 0 && most(self.rung + self.il + self.st) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
+        let step7 = self.step7 + if self.step7 > 0 { self.declarations } else { 0 };
+        if enough(self.step7) && most(step7) && self.step7 > self.il + self.st {
+            return Some(Detected::Step7);
+        }
+        if self.step7 > 0 && self.step7_symbols > 2 && (self.step7 + self.step7_symbols) * 5 >= lines * 4 {
+            return Some(Detected::Step7);
+        }
+        let structure = if self.st > 0 { self.scl } else { 0 };
+        let charted = most(self.chart + self.chart_words + self.il + self.st + self.rung);
+        let is_chart = self.has_chart() && self.chart + self.chart_words > 2 && self.graph == 0;
+        if is_chart && charted && (self.pages > 1 || self.pl7 + self.pl7_2 > 0 && self.iec == 0) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
+        if enough(self.pl7) && self.iec == 0 && self.chart == 0 && most(self.il + self.st + structure) {
+            return Some(Detected::Pasted(self.pl7_text(Extension::Other)));
+        }
+        None
+    }
+
+    pub(super) fn pl7_text(&self, extension: Extension) -> Pl7Text {
+        // Under headings, each unit says what it is.
+        if self.has_chart() && self.headings() == 0 {
+            return if self.pages > 0 { Pl7Text::Gr7 } else { Pl7Text::Sfc };
+        }
+        // Of all words, those of rungs are the least ambiguous; a line of a rung may look like a line of other languages.
+        let (il, st, ld) = match (self.headings_il, self.headings_st, self.headings_ld) {
+            (0, 0, 0) => (self.il, self.st, self.cells),
+            headings => headings,
+        };
+        if ld > 0 && ld >= il.max(st) {
+            return Pl7Text::Ld;
+        }
+        match il.cmp(&st) {
+            std::cmp::Ordering::Greater => Pl7Text::Il,
+            std::cmp::Ordering::Equal if extension == Extension::Il => Pl7Text::Il,
+            _ => Pl7Text::St,
+        }
+    }
+}
+
+/// Whether the header of a block may be that of a DFB type: its name has neither a number nor quotes.
+fn is_dfb_header(block: &Entity, line: &str) -> bool {
+    matches!(block, Entity::Block { kind: BlockKind::Fb, name: BlockName::Symbol(_) }) && !line.contains('"')
+}
+
+/// Whether a line of a function block can only be one of a DFB type (PL7:5376-5391, PL7:3571-3576, PL7:3808-3811).
+fn is_dfb_line(code: &str, first: &str) -> bool {
+    match first {
+        "VAR_PUBLIC" | "VAR_PRIVATE" | "FTON" | "FTOF" | "FTP" | "FPULSOR" => return true,
+        // Statement list has `SET` alone, and `INC 5`.
+        "SET" | "RESET" | "INC" | "DEC" => {
+            let operand = code.get(first.len()..).unwrap_or_default().trim();
+            return operand.starts_with(|it: char| it.is_alphabetic() || it == '_') && operand.ends_with(';');
+        }
+        _ => {}
+    }
+    let bytes = code.as_bytes();
+    // Nearly no line has letters that one of the words could be made of.
+    let may_be_type = memchr::memchr3(b'_', b'B', b'b', bytes).is_some();
+    let mut words = code.split(|it: char| !(it.is_alphanumeric() || it == '_'));
+    let is_edge = |at: usize| at.checked_sub(1).is_some_and(|it| matches!(bytes[it], b'R' | b'F'));
+    let may_be_edge = memchr::memchr_iter(b'E', bytes).any(is_edge);
+    let mut blanks = code.split_whitespace().map(|it| it.trim_start_matches('(')).peekable();
+    may_be_type
+        && words.any(|it| ["EBOOL", "AR_X", "AR_W", "AR_D", "AR_R"].iter().any(|ty| ty.eq_ignore_ascii_case(it)))
+        || may_be_edge
+            && std::iter::from_fn(|| Some((blanks.next()?, blanks.peek()?.chars().next())))
+                .any(|(word, next)| matches!(word, "RE" | "FE") && next.is_some_and(char::is_alphabetic))
+}
+
+/// Whether a line that starts with a common word is one of a chart: `STEP 3 AT (C 4,L 3) :`, `TRANSITION FROM X0 TO X1`.
+fn is_chart_line(code: &str, first: &str) -> bool {
+    let rest = word(code).1.trim_start();
+    let next = word(rest).0;
+    match first {
+        "STEP" => !next.is_empty() && rest.contains(':'),
+        "ACTION" => rest.starts_with('(') || rest.contains(':') && !rest.starts_with(":="),
+        "TRANSITION" => rest.starts_with('(') || ["AT", "FROM"].iter().any(|it| it.eq_ignore_ascii_case(next)),
+        "PAGE" => !next.is_empty() && next.bytes().all(|it| it.is_ascii_digit()),
+        _ => true,
+    }
+}
+
+/// The part of a line before `//`.
+fn before_line_comment(code: &str) -> &str {
+    let mut slashes = memchr::memchr_iter(b'/', code.as_bytes());
+    let end = slashes.find(|at| code.as_bytes().get(at + 1) == Some(&b'/')).unwrap_or(code.len());
+    code.get(..end).unwrap_or_default()
+}
+
+/// Whether letters stand for a kind of PL7 objects, between `%` and the number, in any case.
+fn is_pl7_kind(letters: &str) -> bool {
+    let mut upper = [0; 3];
+    let Some(upper) = upper.get_mut(..letters.len()) else { return false };
+    upper.copy_from_slice(letters.as_bytes());
+    upper.make_ascii_uppercase();
+    matches!(
+        &*upper,
+        [b'I' | b'Q' | b'M' | b'K' | b'S' | b'X' | b'T' | b'C' | b'R' | b'L']
+            | [b'I' | b'Q' | b'M' | b'K' | b'S', b'W' | b'D']
+            | [b'I' | b'Q' | b'M' | b'K', b'F']
+            | [b'M' | b'K', b'B']
+            | b"TM"
+            | b"MN"
+            | b"DR"
+            | b"SR"
+            | b"NW"
+            | b"XM"
+            | b"CH"
+            | b"BLK"
+    )
+}
+
+/// Whether a line names an object as PL7 does: `%MW10`, `%I1.0`, `%MW 99`, `%X(0)`. Lower case must be followed by the
+/// number at once, which no format string of another language is.
+pub(super) fn has_pl7_object(line: &str) -> bool {
+    memchr::memchr_iter(b'%', line.as_bytes()).any(|at| {
+        let before = line.get(..at).and_then(|before| before.chars().next_back());
+        let rest = line.get(at + 1..).unwrap_or_default();
+        let end = rest.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(rest.len());
+        let (letters, number) = rest.split_at(end);
+        let upper = letters.bytes().all(|byte| byte.is_ascii_uppercase());
+        let number = if upper { number.trim_start() } else { number };
+        !before.is_some_and(|before| before.is_alphanumeric() || before == '%')
+            && is_pl7_kind(letters)
+            && number.starts_with(|c: char| c.is_ascii_digit() || upper && c == '(')
+    })
+}
+
+/// Whether a line names an object, or transfers a value, as PL7-2 alone does: `I0,05`, `T0,D`, `W5,A`, `W1 -> W2`. No symbol
+/// has a comma.
+fn has_pl7_2_object(line: &str) -> bool {
+    let bytes = line.as_bytes();
+    let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
+    // Nearly no line has any of these: to look whether one is there costs less than to look where.
+    let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
+    let mut is_named = || words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault));
+    let has_arrow = || memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
+    let is_transfer = || line.contains("END_BLOCK") && !line.contains(":=");
+    let address = || {
+        let at = memchr::memchr_iter(b'A', bytes).find(|&at| at > 0 && bytes[at - 1..].starts_with(b" AT "))?;
+        line.get(at + 3..)
+    };
+    memchr::memchr(b',', bytes).is_some() && is_named()
+        || has_arrow() && is_transfer()
+        || address().is_some_and(|it| declared_by_pl7_2(it.trim_start()))
+}
+
+/// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
+/// others too: `%I0,05`, `%X3`.
+fn has_object_of_pl7_alone(line: &str) -> bool {
+    memchr::memchr_iter(b'%', line.as_bytes()).any(|at| {
+        let rest = line.get(at..).unwrap_or_default();
+        let is_part = |it: char| it.is_ascii_alphanumeric() || matches!(it, '%' | ',' | '.' | ':');
+        let end = rest.find(|it| !is_part(it)).unwrap_or(rest.len()).min(LONGEST_PL7_2 + 2);
+        let word = rest.get(..end).unwrap_or_default().trim_end_matches([',', ':', '.']);
+        let is_label =
+            matches!(word.as_bytes(), [b'%', b'L' | b'l', digits @ ..] if digits.iter().all(u8::is_ascii_digit));
+        !is_label && object::pl72::class_of(word).is_none()
+    })
+}
+
+/// Characters of the longest address with a comma.
+const LONGEST_PL7_2: usize = "COM15,3,F".len();
+
+/// What follows `%L10:`.
+fn strip_pl7_label(line: &str) -> &str {
+    let Some(label) = strip_prefix_ignore_case(line, "%L") else { return line };
+    let rest = label.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
+    rest.strip_prefix(':').unwrap_or(line).trim_start()
+}
+
+/// The language of one line of PL7; `None` if it has none of its own.
+fn pl7_statement(code: &str, first: &str, has_object: bool) -> Option<Pl7Text> {
+    let rest = code.get(first.len()..).unwrap_or_default().trim();
+    match first {
+        "LD" | "LDN" | "LDR" | "LDF" | "AND" | "ANDN" | "ANDR" | "ANDF" | "OR" | "ORN" | "ORR" | "ORF" | "XOR"
+        | "XORN" | "XORR" | "XORF" | "ST" | "STN" | "S" | "R" | "JMP" | "JMPC" | "JMPCN" | "IN" | "CU" | "CD"
+        | "BLK" => {
+            let symbol = first.len() > 1 && {
+                let (name, rest) = word(rest);
+                !name.is_empty() && rest.is_empty()
+            };
+            let operand = has_object && rest.starts_with(['%', '[', '(']);
+            (symbol || operand).then_some(if rest.ends_with("THEN") || rest.ends_with(';') {
+                Pl7Text::St
+            } else {
+                Pl7Text::Il
+            })
+        }
+        "MPS" | "MRD" | "MPP" | "RETC" | "RETCN" | "ENDC" | "ENDCN" | "END_BLK" | "OUT_BLK" if rest.is_empty() => {
+            Some(Pl7Text::Il)
+        }
+        "IF" | "ELSIF" | "ELSEIF" | "WHILE" | "FOR" | "UNTIL" | "SET" | "RESET" | "INC" | "DEC" if has_object => {
+            Some(Pl7Text::St)
+        }
+        _ if code.starts_with('[') && has_object => Some(Pl7Text::Il),
+        _ if code.contains(":=") && code.ends_with(';') => Some(Pl7Text::St),
+        _ => None,
+    }
+}
+
+/// Whether a line is a statement list instruction, with an optional label before it.
+fn is_step7_instruction(line: &str) -> bool {
+    let line = strip_step7_label(line);
+    let line = line.split(';').next().unwrap_or_default().trim();
+    let end = line.find(|c: char| c.is_ascii_alphanumeric()).unwrap_or(line.len());
+    let operator = line.get(..end).unwrap_or_default().trim_end();
+    if !operator.is_empty() {
+        let rest = line.get(operator.len()..).unwrap_or_default();
+        return match operator {
+            "=" => is_step7_operand(rest),
+            ")" => rest.is_empty() || rest.eq_ignore_ascii_case("MCR"),
+            "+" | "-" | "*" | "/" | "==" | "<>" | ">" | "<" | ">=" | "<=" => {
+                ["I", "D", "R"].iter().any(|kind| kind.eq_ignore_ascii_case(rest))
+                    || operator == "+" && is_step7_operand(rest)
+                    || operator == "+" && ["AR1", "AR2"].iter().any(|name| name.eq_ignore_ascii_case(rest))
+            }
+            // `= "symbol"`, `= #local`, `= « symbol »`.
+            _ => operator.strip_prefix('=').is_some_and(|_| is_step7_operand(line.get(1..).unwrap_or_default())),
+        };
+    }
+    let (mnemonic, rest) = word(line);
+    let operand = rest.trim();
+    match mnemonic.to_ascii_uppercase().as_str() {
+        "U" | "UN" | "A" | "AN" | "ON" | "X" | "XN" => operand == "(" || is_step7_operand(operand),
+        "O" => matches!(operand, "" | "(") || is_step7_operand(operand),
+        "S" | "R" | "FP" | "FN" | "L" | "T" | "SI" | "SV" | "SE" | "SS" | "SA" | "SP" | "SD" | "SF" | "FR" | "ZV"
+        | "ZR" | "CU" | "CD" | "LC" | "AUF" | "OPN" | "INC" | "DEC" | "NOP" | "BLD" => is_step7_operand(operand),
+        "SPA" | "SPB" | "SPBN" | "SPBB" | "SPBNB" | "SPBI" | "SPBIN" | "SPL" | "SPM" | "SPMZ" | "SPN" | "SPO"
+        | "SPP" | "SPPZ" | "SPS" | "SPU" | "SPZ" | "JU" | "JC" | "JCN" | "JCB" | "JNB" | "JBI" | "JNBI" | "JL"
+        | "JM" | "JMZ" | "JN" | "JO" | "JP" | "JPZ" | "JOS" | "JUO" | "JZ" | "LOOP" => {
+            let (label, rest) = word(operand);
+            !label.is_empty() && rest.is_empty()
+        }
+        "CALL" | "UC" | "CC" => {
+            let called = operand.split([',', '(']).next().unwrap_or_default();
+            is_step7_operand(called)
+        }
+        "UW" | "OW" | "XOW" | "UD" | "OD" | "XOD" | "AW" | "AD" | "SSI" | "SSD" | "SLW" | "SRW" | "SLD" | "SRD"
+        | "RLD" | "RRD" | "LAR1" | "LAR2" | "TAR1" | "TAR2" => operand.is_empty() || is_step7_operand(operand),
+        "BE" | "BEA" | "BEB" | "BEU" | "BEC" | "SET" | "CLR" | "NOT" | "SAVE" | "TAK" | "ENT" | "LEAVE" | "INVI"
+        | "INVD" | "NEGI" | "NEGD" | "NEGR" | "BTI" | "ITB" | "BTD" | "DTB" | "ITD" | "DTR" | "RND" | "TRUNC"
+        | "TAW" | "TAD" | "CAW" | "CAD" | "TAR" | "CAR" | "TDB" | "CDB" | "MCRA" | "MCRD" | "MOD" | "RLDA" | "RRDA" => {
+            operand.is_empty()
+        }
+        "MCR" => operand == "(",
+        _ => false,
+    }
+}
+
+/// Whether a line is a bit instruction on a bare name, as documents print them: `U Sto`, `UN T2p[21]`.
+fn is_step7_with_symbol(line: &str) -> bool {
+    let (mnemonic, operand) = match line.strip_prefix('=') {
+        Some(operand) => ("=", operand),
+        None => word(line),
+    };
+    let (_, rest) = word(operand.trim_start());
+    let index = rest.strip_prefix('[').map_or(Some(rest), |index| index.split_once(']').map(|(_, rest)| rest));
+    ["U", "UN", "A", "AN", "O", "ON", "X", "XN", "S", "R", "="].contains(&mnemonic)
+        && operand.starts_with([' ', '\t'])
+        && index.is_some_and(|rest| matches!(rest.trim(), "" | ";"))
+}
+
+/// What follows `M001:`. A label alone is left as it is.
+fn strip_step7_label(line: &str) -> &str {
+    let (label, rest) = word(line);
+    match rest.trim_start().strip_prefix(':') {
+        Some(code) if (1..=8).contains(&label.len()) && !code.starts_with('=') && !code.trim().is_empty() => {
+            code.trim_start()
+        }
+        _ => line,
+    }
+}
+
+/// Prefixes of the absolute operands of STEP 7 and STEP 5 before the number, in both mnemonic sets.
+const STEP7_AREAS: [&str; 48] = [
+    "E", "EB", "EW", "ED", "A", "AB", "AW", "AD", "I", "IB", "IW", "ID", "Q", "QB", "QW", "QD", "M", "MB", "MW", "MD",
+    "L", "LB", "LW", "LD", "T", "Z", "C", "DBX", "DBB", "DBW", "DBD", "DIX", "DIB", "DIW", "DID", "PEB", "PEW", "PED",
+    "PAB", "PAW", "PAD", "PIW", "PQW", "OB", "FB", "FC", "DB", "DI",
+];
+
+/// Whether a text is an operand of STEP 7 and nothing else: `E 0.0`, `DB1.DBW 2`, `#tem`, `"X0"`, `« X0 »`, `S5T#1S`,
+/// `W [AR1,P#0.0]`, `-5`.
+fn is_step7_operand(text: &str) -> bool {
+    let text = text.trim();
+    let quoted = |open: char, close: char| {
+        text.strip_prefix(open).and_then(|rest| rest.split_once(close)).is_some_and(|(name, rest)| {
+            !name.is_empty() && (rest.is_empty() || rest.starts_with('.') && !rest.contains(' '))
+        })
+    };
+    if quoted('"', '"') || quoted('«', '»') || quoted('\'', '\'') {
+        return true;
+    }
+    if let Some(local) = text.strip_prefix('#') {
+        return !local.is_empty() && !local.contains(char::is_whitespace);
+    }
+    let is_constant = |text: &str| {
+        text.chars()
+            .all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '#' | '_' | ':' | '+' | '-' | ',' | '(' | ')'))
+    };
+    if text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-')) {
+        return is_constant(text);
+    }
+    let (prefix, rest) = word(text);
+    if rest.starts_with('#') && rest.len() > 1 {
+        return prefix.len() <= 4 && !rest.contains(char::is_whitespace);
+    }
+    if ["SFC", "SFB", "UDT", "STW", "AR1", "AR2", "DBNO", "DBLG", "DINO", "DILG", "OV", "OS", "BIE", "BR", "UO"]
+        .iter()
+        .any(|name| name.eq_ignore_ascii_case(prefix))
+        && rest.trim_start().bytes().all(|byte| byte.is_ascii_digit())
+    {
+        return true;
+    }
+    let end = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (area, rest) = text.split_at(end);
+    if !STEP7_AREAS.iter().any(|name| name.eq_ignore_ascii_case(area)) {
+        return false;
+    }
+    let rest = rest.trim_start();
+    if let Some(indirect) = rest.strip_prefix('[') {
+        return indirect.ends_with(']');
+    }
+    // `0.0`, `1.DBX 0.0`: at most one blank inside.
+    rest.starts_with(|c: char| c.is_ascii_digit())
+        && rest.bytes().filter(|byte| *byte == b' ').count() <= 1
+        && rest.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b' '))
+        && (!rest.contains(' ') || rest.contains(".D") || rest.contains(".d"))
+}
+
+/// Whether a line can only be STEP 5: a colon before the instruction, the end of a segment, fixed-point operators and
+/// constants of its kinds.
+fn is_step5(line: &str) -> bool {
+    if line.starts_with("***") {
+        return true;
+    }
+    // The address that a print puts before the colon.
+    let address = line.find(|it: char| !it.is_ascii_hexdigit()).unwrap_or(0);
+    let behind = line.get(address..).unwrap_or_default().trim_start();
+    let line = if address >= 4 && behind.starts_with(':') { behind } else { line };
+    let line = step5_code(line);
+    let heading = step5_heading(line).and_then(|it| it.block_kind());
+    if heading.is_some_and(|it| matches!(it, BlockKind::Pb | BlockKind::Sb | BlockKind::Fx | BlockKind::Dx)) {
+        return true;
+    }
+    let (colon, code) = match line.strip_prefix(':') {
+        Some(code) if !code.starts_with('=') || code.starts_with("= ") => (true, code.trim_start()),
+        _ => (false, line),
+    };
+    let operator = ["!=F", "><F", "!=G", "><G", "!=D", "><D"].iter().any(|operator| code.starts_with(operator));
+    let constant = code.strip_prefix("L ").is_some_and(|operand| {
+        let (kind, _) = operand.trim_start().split_at_checked(2).unwrap_or_default();
+        ["KB", "KC", "KF", "KG", "KH", "KM", "KT", "KY", "KZ"].contains(&kind)
+    });
+    operator || constant || colon && is_step7_instruction(code) || is_step5_instruction(strip_step7_label(code))
+}
+
+/// Whether an instruction is one that STEP 7 has not: `SPA PB 10`, `SPB= M1`, `A DB 5`, `KEW`, `NAME :INIT`.
+fn is_step5_instruction(code: &str) -> bool {
+    let (mnemonic, rest) = word(code);
+    let rest = rest.trim_start();
+    let (operand, after) = word(rest);
+    let letters = operand.trim_end_matches(|it: char| it.is_ascii_digit());
+    let numbered = letters.len() < operand.len() || after.trim_start().starts_with(|it: char| it.is_ascii_digit());
+    match mnemonic {
+        "SPA" | "SPB" | "JU" | "JC" | "BA" | "BAB" | "DOU" | "DOC" => {
+            numbered && ["OB", "PB", "SB", "FB", "FX"].contains(&letters) || rest.starts_with('=')
+        }
+        "SPZ" | "SPN" | "SPP" | "SPM" | "SPO" | "JZ" | "JN" | "JP" | "JM" | "JO" => rest.starts_with('='),
+        "A" | "E" | "C" | "G" => numbered && letters == "DB" || letters == "DX",
+        "KEW" | "KZW" | "CFW" | "CSW" => rest.is_empty(),
+        "NAME" | "BEZ" | "DECL" => rest.starts_with(':') && !rest.starts_with(":="),
+        _ => false,
+    }
+}
+
+/// Whether a line declares, initialises or passes a value: `tem : TIMER;`, `duree := S5T#1S`.
+fn is_declaration(line: &str) -> bool {
+    if memchr::memchr(b':', line.as_bytes()).is_none() {
+        return false;
+    }
+    let name_end = line
+        .find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ',' | '[' | ']' | ' ' | '\t')))
+        .unwrap_or(line.len());
+    let (name, rest) = line.split_at(name_end);
+    if name.trim().is_empty() || name.trim().contains(' ') && !name.contains(',') {
+        return false;
+    }
+    match rest.strip_prefix(":=") {
+        Some(value) => !value.trim().is_empty(),
+        None => rest.strip_prefix(':').is_some_and(|declared| {
+            let declared = declared.trim_start();
+            let (name, _) = word(declared);
+            !name.is_empty()
+                && name.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_' || byte.is_ascii_digit())
+                || declared.starts_with('"')
+        }),
+    }
+}
+
+/// Whether a row of a symbol table names a block that only STEP 5 has.
+fn is_step5_row(line: &str) -> bool {
+    let has_letters = line.as_bytes().windows(2).any(|it| matches!(it, [b'P' | b'S', b'B'] | [b'F' | b'D', b'X']));
+    has_letters
+        && line.split(['\t', '"', ',']).any(|field| {
+            let (letters, number) = field.trim().split_at_checked(2).unwrap_or_default();
+            let number = number.trim();
+            matches!(letters, "PB" | "SB" | "FX" | "DX")
+                && !number.is_empty()
+                && number.bytes().all(|it| it.is_ascii_digit())
+        })
+}
+
+/// Whether a line is a row of a symbol table: quoted fields, fixed width after `126,`, or an address between tabs.
+fn is_symbol_row(line: &str) -> bool {
+    line.starts_with("126,")
+        || line.starts_with('"') && line.matches("\",\"").count() >= 2
+        || line.contains('\t') && line.split('\t').take(2).any(is_step7_operand)
+}
+
+/// Whether a line is natural language or markup of a document, rather than code.
+fn is_prose(line: &str) -> bool {
+    if line.starts_with("```") {
+        return true;
+    }
+    let (mut words, mut natural) = (0, 0);
+    for word in line.split_whitespace().take(24) {
+        let letters = word.trim_matches(['.', ',', ';', ':', '!', '?', '(', ')', '«', '»', '"']);
+        let is_natural = letters.contains(char::is_lowercase)
+            && letters.chars().all(|c| c.is_alphabetic() || matches!(c, '\'' | '’' | '-'));
+        words += 1;
+        natural += u32::from(is_natural);
+    }
+    words >= 4 && natural * 3 >= words * 2 && !line.contains(":=")
+}
