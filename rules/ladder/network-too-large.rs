@@ -4,16 +4,18 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::entity::Family;
-use crate::model::ladder::{Grid, Layout};
+use crate::model::ladder::{Grid, Layout, Row};
 use crate::syntax::pl7::ast::Rung;
 use crate::syntax::{AstNode as _, SyntaxKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let layout = Layout::of(cx.model.language);
     for rung in cx.nodes(SyntaxKind::Rung).filter_map(Rung::cast) {
-        let grid = Grid::new(rung, layout);
-        for row in &grid.rows {
-            let Some(cell) = row.excess else { continue };
+        let rows = Grid::rows_of(rung, layout);
+        // Where a cell was not read, nobody knows how many there are.
+        let is_read = || !rung.syntax().descendants().any(|it| it.kind() == SyntaxKind::Error);
+        for row in &rows {
+            let Some(cell) = row.excess.filter(|_| is_read()) else { continue };
             let has_assumed = row.is_assumed;
             let found = sink.report(
                 cell.syntax().text_range(),
@@ -27,8 +29,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             }
         }
         let Some(limit) = cx.target.ladder_lines() else { continue };
-        let lines = grid.lines_used();
-        if let Some(first) = grid.rows.get(limit.value as usize).filter(|_| lines > limit.value) {
+        let lines = Row::used(&rows);
+        if let Some(first) = rows.get(limit.value as usize).filter(|_| lines > limit.value) {
             let message = format!("this rung has {lines} lines, and the controller's have {}", limit.value);
             let found = sink.report(first.range, message);
             if cx.target.family() == Family::Pl7 {

@@ -5,7 +5,7 @@ use super::scene::{Anchor, Fill, Group, Point, Rect, Scene, Shape, Stroke, Style
 use super::{Mark, Unit, heading, words};
 use crate::analysis::program::ProgramIndex;
 use crate::model::dfb::Interface;
-use crate::model::ladder::{Grid, Layout, Placed};
+use crate::model::ladder::{Grid, Layout, Placed, Row, Wire};
 use crate::model::unit::Slot;
 use crate::syntax::pl7::ast;
 use crate::syntax::pl7::chart::ast as chart;
@@ -113,7 +113,7 @@ fn rung(it: ast::Rung<'_>, layout: Layout, owner: Option<String>, index: &Progra
         owner,
         label,
         comment,
-        rows: grid.lines_used().max(last).max(1),
+        rows: Row::used(&grid.rows).max(last).max(1),
         cells,
         vertical: grid.vertical.clone(),
         marks: Vec::new(),
@@ -134,6 +134,7 @@ fn cell(it: &Placed<'_>, grid: &Grid<'_>, index: &ProgramIndex<'_>) -> Cell {
         }
         Some(Element::Block) => {
             let block = grid.layout.block_of(it.cell);
+            let height = grid.inputs(it).len();
             let interface = operand.as_deref().and_then(|it| index.dfb_of(it)).map(|it| it.1);
             match (block, interface) {
                 (Some(block), _) => {
@@ -142,19 +143,18 @@ fn cell(it: &Placed<'_>, grid: &Grid<'_>, index: &ProgramIndex<'_>) -> Cell {
                         block.outputs().iter().map(|it| (*it).to_owned()).collect(),
                     ];
                 }
-                (None, Some(interface)) => pins = dfb_pins(interface, it.inputs.len()),
+                (None, Some(interface)) => pins = dfb_pins(interface, height),
                 (None, None) => {
+                    let is_given = |it: &Wire| grid.is_fed(*it) || grid.input_actual(*it).is_some();
+                    let is_taken = |it: &Wire| grid.is_used(*it) || grid.output_actual(*it).is_some();
                     let is_wired = |row: usize| {
-                        it.inputs.get(row).is_some_and(|it| grid.is_fed(*it) || grid.input_actual(*it).is_some())
-                            || it
-                                .outputs
-                                .get(row)
-                                .is_some_and(|it| grid.is_used(*it) || grid.output_actual(*it).is_some())
+                        grid.inputs(it).get(row).is_some_and(is_given)
+                            || grid.outputs(it).get(row).is_some_and(is_taken)
                     };
-                    rows = (0..it.inputs.len()).rev().find(|it| is_wired(*it)).map_or(1, |it| it + 1);
+                    rows = (0..height).rev().find(|it| is_wired(*it)).map_or(1, |it| it + 1);
                 }
             }
-            rows = rows.max(pins[0].len()).max(pins[1].len()).min(it.inputs.len().max(1));
+            rows = rows.max(pins[0].len()).max(pins[1].len()).min(height.max(1));
             operand
         }
         Some(_) => operand,

@@ -7,7 +7,7 @@
 //! **Invariant:** time and memory are linear in the text of the rung, whatever numbers it holds.
 
 use rowan::TextRange;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::sets::Sets;
 use crate::syntax::pl7::ast::{Cell, Expr, Rung};
@@ -138,7 +138,7 @@ impl BlockShape {
 }
 
 /// Index of a wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Wire(u32);
 
 impl Wire {
@@ -157,10 +157,8 @@ pub struct Placed<'t> {
     pub column: u32,
     /// Cells.
     pub width: u32,
-    /// The wire at its left edge, of a function block one in each of its rows.
-    pub inputs: Vec<Wire>,
-    /// The wire at its right edge. What acts lets nothing through and has none.
-    pub outputs: Vec<Wire>,
+    /// Its place among the elements of the grid.
+    index: u32,
 }
 
 impl Placed<'_> {
@@ -233,8 +231,80 @@ pub struct Grid<'t> {
     pub rows: Vec<Row<'t>>,
     /// Vertical links: each leads from a row to the one below, at the left edge of a column; both from 0.
     pub vertical: Vec<(u32, u32)>,
-    wires: Vec<Junction>,
+    /// Of each element.
+    inputs: Lists<Wire>,
+    outputs: Lists<Wire>,
+    /// Of each wire, the elements on its left and on its right, by index into [`Self::placed`]. Through what a pin of a DFB
+    /// is given nothing flows: it is on neither side.
+    left: Lists<u32>,
+    right: Lists<u32>,
+    /// What pins of DFBs are given, by the wire of the pin.
+    input_actuals: FxHashMap<Wire, u32>,
+    output_actuals: FxHashMap<Wire, u32>,
     open_links: Vec<TextRange>,
+}
+
+/// Lists in one allocation.
+#[derive(Debug)]
+struct Lists<T> {
+    items: Vec<T>,
+    /// Where each list ends that is finished.
+    ends: Vec<usize>,
+}
+
+impl<T> Default for Lists<T> {
+    fn default() -> Self {
+        Self { items: Vec::new(), ends: Vec::new() }
+    }
+}
+
+impl<T: Copy + Default> Lists<T> {
+    /// `count` lists, of items that come with the number of their list; in each they keep their order.
+    fn sorted(count: usize, items: impl Iterator<Item = (usize, T)> + Clone) -> Self {
+        let mut next = vec![0; count + 1];
+        items.clone().for_each(|it| next[it.0 + 1] += 1);
+        for at in 1..next.len() {
+            next[at] += next[at - 1];
+        }
+        let mut lists = Self { items: vec![T::default(); next[count]], ends: next[1..].to_vec() };
+        for (list, item) in items {
+            lists.items[next[list]] = item;
+            next[list] += 1;
+        }
+        lists
+    }
+}
+
+impl<T> Lists<T> {
+    /// Finishes a list, which has what was added to `items` since the last one.
+    fn finish(&mut self) {
+        self.ends.push(self.items.len());
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn start(&self, list: usize) -> usize {
+        list.checked_sub(1).and_then(|it| self.ends.get(it)).copied().unwrap_or(0)
+    }
+
+    /// Length of the list that is not finished.
+    fn open_len(&self) -> usize {
+        self.items.len() - self.start(self.len())
+    }
+
+    fn open(&self) -> &[T] {
+        self.items.get(self.start(self.len())..).unwrap_or_default()
+    }
+
+    fn get(&self, list: usize) -> Option<&[T]> {
+        self.items.get(self.start(list)..*self.ends.get(list)?)
+    }
+
+    fn of(&self, list: usize) -> &[T] {
+        self.get(list).unwrap_or_default()
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -248,16 +318,6 @@ pub struct Row<'t> {
     pub range: TextRange,
 }
 
-/// What meets at a wire, by index into [`Grid::placed`].
-#[derive(Debug, Clone, Default)]
-struct Junction {
-    left: Vec<u32>,
-    right: Vec<u32>,
-    /// Through what a pin is given nothing flows: it is on neither side.
-    input_actual: Option<u32>,
-    output_actual: Option<u32>,
-}
-
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Unit {
     Empty,
@@ -268,117 +328,131 @@ enum Unit {
 /// Rows of cells while they are read.
 #[derive(Default)]
 struct Rows {
-    units: Vec<Vec<Unit>>,
+    units: Lists<Unit>,
     /// Vertical links: the row, the column whose right edge they stand at, the cell that draws them.
     links: Vec<(usize, usize, TextRange)>,
 }
 
+impl Row<'_> {
+    /// Rows down to the last one that holds something.
+    pub fn used(rows: &[Self]) -> u32 {
+        let last = rows.iter().rposition(|it| !it.is_empty);
+        last.map_or(0, |it| u32::try_from(it + 1).unwrap_or(u32::MAX))
+    }
+}
+
 impl<'t> Grid<'t> {
     pub fn new(rung: Rung<'t>, layout: Layout) -> Self {
-        let mut grid = Self {
-            layout,
-            placed: Vec::new(),
-            rows: Vec::new(),
-            vertical: Vec::new(),
-            wires: Vec::new(),
-            open_links: Vec::new(),
-        };
-        let mut rows = Rows::default();
-        for row in rung.rows() {
-            grid.read_row(row, &mut rows);
-        }
+        let (mut grid, rows) = Self::read(rung, layout);
         let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
         grid.vertical = rows.links.iter().map(|it| (number(it.0), number(it.1))).collect();
         grid.wire(&rows);
         grid
     }
 
+    /// The rows alone, of which nothing is wired.
+    pub fn rows_of(rung: Rung<'t>, layout: Layout) -> Vec<Row<'t>> {
+        Self::read(rung, layout).0.rows
+    }
+
+    fn read(rung: Rung<'t>, layout: Layout) -> (Self, Rows) {
+        let mut grid = Self {
+            layout,
+            placed: Vec::new(),
+            rows: Vec::new(),
+            vertical: Vec::new(),
+            inputs: Lists::default(),
+            outputs: Lists::default(),
+            left: Lists::default(),
+            right: Lists::default(),
+            input_actuals: FxHashMap::default(),
+            output_actuals: FxHashMap::default(),
+            open_links: Vec::new(),
+        };
+        let mut rows = Rows::default();
+        for row in rung.rows() {
+            grid.read_row(row, &mut rows);
+        }
+        (grid, rows)
+    }
+
     fn read_row(&mut self, row: crate::syntax::pl7::ast::RungRow<'t>, rows: &mut Rows) {
         let layout = self.layout;
         let most = layout.columns() as usize;
-        let at = rows.units.len();
-        let mut units = Vec::new();
+        let Rows { units, links } = rows;
+        let at = units.len();
         let mut excess = None;
         let mut is_assumed = false;
+        let mut is_empty = true;
         let mut lines = 1;
         for cell in row.cells() {
             let element = cell.element();
-            let count = cell.count().unwrap_or(1).min(layout.most_cells());
+            let count = || cell.count().unwrap_or(1);
+            let cells = || count().min(layout.most_cells()) as usize;
             match element {
                 Some(Element::EmptyLine) => {
                     // An empty line is a row of its own, whatever else stands in it.
-                    lines = cell.count().unwrap_or(1).clamp(1, layout.most_lines());
-                    let missing = most.saturating_sub(units.len());
-                    units.extend(std::iter::repeat_n(Unit::Empty, missing));
+                    lines = count().clamp(1, layout.most_lines());
+                    let missing = most.saturating_sub(units.open_len());
+                    units.items.extend(std::iter::repeat_n(Unit::Empty, missing));
                 }
-                Some(Element::EmptyCell) => units.extend(std::iter::repeat_n(Unit::Empty, count as usize)),
+                Some(Element::EmptyCell) => units.items.extend(std::iter::repeat_n(Unit::Empty, cells())),
                 Some(Element::VLink) => {
-                    units.push(Unit::Empty);
-                    rows.links.push((at, units.len(), cell.syntax().text_range()));
+                    units.items.push(Unit::Empty);
+                    links.push((at, units.open_len(), cell.syntax().text_range()));
                 }
                 Some(link @ (Element::HLink | Element::ShortCircuit)) => {
-                    for _ in 0..count {
-                        self.place(cell, element, at, &mut units);
+                    for _ in 0..cells() {
+                        self.place(cell, element, at, units);
                     }
                     if link == Element::ShortCircuit {
-                        rows.links.push((at, units.len(), cell.syntax().text_range()));
+                        links.push((at, units.open_len(), cell.syntax().text_range()));
                     }
                 }
-                _ => self.place(cell, element, at, &mut units),
+                _ => self.place(cell, element, at, units),
             }
             is_assumed |= element == Some(Element::Block) && layout.is_assumed(cell);
-            if units.len() > most {
+            is_empty &= matches!(element, Some(Element::EmptyLine | Element::EmptyCell));
+            if units.open_len() > most {
                 excess = excess.or(Some(cell));
             }
         }
-        let columns = u32::try_from(units.len()).unwrap_or(u32::MAX);
+        let columns = u32::try_from(units.open_len()).unwrap_or(u32::MAX);
         let range = row.syntax().text_range();
-        let is_empty = row.cells().all(|it| matches!(it.element(), Some(Element::EmptyLine | Element::EmptyCell)));
         self.rows.push(Row { columns, excess, is_assumed, is_empty, range });
-        rows.units.push(units);
+        units.finish();
         for _ in 1..lines {
             let columns = layout.columns();
             self.rows.push(Row { columns, excess: None, is_assumed: false, is_empty: true, range });
-            rows.units.push(vec![Unit::Empty; most]);
+            units.items.extend(std::iter::repeat_n(Unit::Empty, most));
+            units.finish();
         }
     }
 
-    fn place(&mut self, cell: Cell<'t>, element: Option<Element>, row: usize, units: &mut Vec<Unit>) {
-        let index = u32::try_from(self.placed.len()).unwrap_or(u32::MAX);
-        let width = element.map_or(1, |it| self.layout.width_of(it, cell));
+    fn place(&mut self, cell: Cell<'t>, element: Option<Element>, row: usize, units: &mut Lists<Unit>) {
         let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
-        self.placed.push(Placed {
-            cell,
-            element,
-            row: number(row),
-            column: number(units.len()),
-            width,
-            inputs: Vec::new(),
-            outputs: Vec::new(),
-        });
-        units.extend(std::iter::repeat_n(Unit::Part(index), width as usize));
+        let index = number(self.placed.len());
+        let width = element.map_or(1, |it| self.layout.width_of(it, cell));
+        let (row, column) = (number(row), number(units.open_len()));
+        self.placed.push(Placed { cell, element, row, column, width, index });
+        units.items.extend(std::iter::repeat_n(Unit::Part(index), width as usize));
     }
 
     /// Finds the wires, and what meets at them.
     fn wire(&mut self, rows: &Rows) {
         let Rows { units, links } = rows;
         // A point stands at the left edge of each cell, and at the right edge of the last one of a row.
-        let mut first = Vec::with_capacity(units.len());
-        let mut points = 0_usize;
-        for row in units {
-            first.push(points);
-            points += row.len() + 1;
-        }
+        let first = |row: usize| units.start(row) + row;
+        let points = first(units.len());
         let mut sets = Sets::new(points);
-        for pair in first.windows(2) {
-            if let &[above, below] = pair {
-                sets.join(above, below);
-            }
+        // The left rail.
+        for row in 1..units.len() {
+            sets.join(0, first(row));
         }
         let unit = |row: usize, column: usize| units.get(row).and_then(|it| it.get(column)).copied();
         let is_full = |row: usize, column: usize| matches!(unit(row, column), Some(Unit::Part(_)));
         // Whether a link ends at a cell beside the point, or goes on.
-        let mut drawn: rustc_hash::FxHashSet<(usize, usize)> = rustc_hash::FxHashSet::default();
+        let mut drawn: FxHashSet<(usize, usize)> = FxHashSet::default();
         drawn.extend(links.iter().map(|it| (it.0, it.1)));
         let is_inside = |row: usize, edge: usize| {
             let before = edge.checked_sub(1).and_then(|it| unit(row, it));
@@ -393,69 +467,70 @@ impl<'t> Grid<'t> {
             if !above || !below {
                 self.open_links.push(range);
             }
-            if let (Some(&upper), Some(&lower), Some(cells)) = (first.get(row), first.get(row + 1), units.get(row + 1))
-                && edge <= cells.len()
-            {
-                sets.join(upper + edge, lower + edge);
+            if units.get(row + 1).is_some_and(|it| edge <= it.len()) {
+                sets.join(first(row) + edge, first(row + 1) + edge);
             }
+        }
+        // The rows that each element has pins in, and the pins of DFBs, by row and edge: those of inputs, those of outputs.
+        let mut heights = Vec::with_capacity(self.placed.len());
+        let mut pins: [FxHashSet<(usize, usize)>; 2] = Default::default();
+        for it in &self.placed {
+            let (row, column, end) = (it.row as usize, it.column as usize, it.end() as usize);
+            let is_free = |row: usize| (column..end).all(|it| unit(row, it) == Some(Unit::Empty));
+            let height = (row..row + self.lines(it)).take_while(|at| *at == row || is_free(*at)).count();
+            if self.is_dfb(it) {
+                pins[0].extend((row..row + height).map(|it| (it, column)));
+                pins[1].extend((row..row + height).map(|it| (it, end)));
+            }
+            heights.push(height);
         }
         let mut wires = WireNames { of_root: vec![None; points], count: 1 };
         if points > 0 {
             wires.of_root[sets.find(0)] = Some(Wire::RAIL);
         }
-        // Pins of DFBs, by row and edge: those of inputs, those of outputs.
-        let mut pins = [const { Vec::new() }; 2];
-        for index in 0..self.placed.len() {
-            let (row, column) = (self.placed[index].row as usize, self.placed[index].column as usize);
-            let width = self.placed[index].width as usize;
-            let is_dfb = self.is_dfb(&self.placed[index]);
-            let mut inputs = Vec::new();
-            let mut outputs = Vec::new();
-            for line in 0..self.lines(index) {
-                let row = row + line;
-                let is_free = |it: usize| unit(row, it) == Some(Unit::Empty);
-                if line > 0 && !(column..column + width).all(is_free) {
-                    break;
+        for (it, height) in self.placed.iter().zip(heights) {
+            let (row, column, end) = (it.row as usize, it.column as usize, it.end() as usize);
+            // What a pin is given lies at its wire alone.
+            let is_actual = it.is_actual();
+            for row in row..row + height {
+                let mut wire = |edge: usize| wires.name(sets.find(first(row) + edge));
+                let (input, output) = (wire(column), (!it.is_action()).then(|| wire(end)));
+                if !is_actual || pins[1].contains(&(row, column)) {
+                    self.inputs.items.push(input);
                 }
-                let Some(&start) = first.get(row) else { break };
-                inputs.push(wires.name(sets.find(start + column)));
-                if !self.placed[index].is_action() {
-                    outputs.push(wires.name(sets.find(start + column + width)));
-                }
-                if is_dfb {
-                    pins[0].push((row, column));
-                    pins[1].push((row, column + width));
+                if !is_actual || pins[0].contains(&(row, end)) {
+                    self.outputs.items.extend(output);
                 }
             }
-            self.placed[index].inputs = inputs;
-            self.placed[index].outputs = outputs;
-        }
-        // What a pin is given lies at its wire alone.
-        let pins = pins.map(|it| it.into_iter().collect::<rustc_hash::FxHashSet<(usize, usize)>>());
-        for it in self.placed.iter_mut().filter(|it| it.is_actual()) {
-            let (row, column) = (it.row as usize, it.column as usize);
-            it.outputs.retain(|_| pins[0].contains(&(row, column + 1)));
-            it.inputs.retain(|_| pins[1].contains(&(row, column)));
-        }
-        self.wires = vec![Junction::default(); wires.count as usize];
-        for (index, it) in (0..).zip(&self.placed) {
-            if it.is_actual() {
-                it.outputs.iter().for_each(|wire| self.wires[wire.0 as usize].input_actual = Some(index));
-                it.inputs.iter().for_each(|wire| self.wires[wire.0 as usize].output_actual = Some(index));
-                continue;
+            if is_actual {
+                self.input_actuals.extend(self.outputs.open().iter().map(|wire| (*wire, it.index)));
+                self.output_actuals.extend(self.inputs.open().iter().map(|wire| (*wire, it.index)));
             }
-            for wire in &it.inputs {
-                self.wires[wire.0 as usize].right.push(index);
-            }
-            for wire in &it.outputs {
-                self.wires[wire.0 as usize].left.push(index);
-            }
+            self.inputs.finish();
+            self.outputs.finish();
         }
+        let conducting = self.placed.iter().filter(|it| !it.is_actual());
+        let sides = [&self.outputs, &self.inputs].map(|of| {
+            let ends = conducting
+                .clone()
+                .flat_map(|it| of.of(it.index as usize).iter().map(|wire| (wire.0 as usize, it.index)));
+            Lists::sorted(wires.count as usize, ends)
+        });
+        [self.left, self.right] = sides;
+    }
+
+    /// The wire at the left edge of an element, of a function block one in each of its rows.
+    pub fn inputs(&self, it: &Placed<'_>) -> &[Wire] {
+        self.inputs.of(it.index as usize)
+    }
+
+    /// The wire at the right edge. What acts lets nothing through and has none.
+    pub fn outputs(&self, it: &Placed<'_>) -> &[Wire] {
+        self.outputs.of(it.index as usize)
     }
 
     /// Rows that an element takes.
-    fn lines(&self, index: usize) -> usize {
-        let it = &self.placed[index];
+    fn lines(&self, it: &Placed<'_>) -> usize {
         match it.element {
             Some(Element::Block) => match self.layout.block_of(it.cell) {
                 Some(block) => block.inputs().len().max(block.outputs().len()),
@@ -466,14 +541,13 @@ impl<'t> Grid<'t> {
         }
     }
 
-    /// Rows down to the last one that holds something.
-    pub fn lines_used(&self) -> u32 {
-        let last = self.rows.iter().rposition(|it| !it.is_empty);
-        last.map_or(0, |it| u32::try_from(it + 1).unwrap_or(u32::MAX))
+    /// Whether all of the rung was understood.
+    pub fn is_read(&self) -> bool {
+        self.placed.iter().all(|it| it.element.is_some() && !it.is_broken())
     }
 
     pub fn wire_count(&self) -> usize {
-        self.wires.len()
+        self.left.len()
     }
 
     /// Index of a wire, below [`Self::wire_count`].
@@ -483,12 +557,12 @@ impl<'t> Grid<'t> {
 
     /// Whether some element, or the rail, stands at the left of a wire.
     pub fn is_fed(&self, wire: Wire) -> bool {
-        wire == Wire::RAIL || !self.wires[wire.0 as usize].left.is_empty()
+        wire == Wire::RAIL || !self.left.of(wire.0 as usize).is_empty()
     }
 
     /// Whether some element stands at the right of a wire.
     pub fn is_used(&self, wire: Wire) -> bool {
-        !self.wires[wire.0 as usize].right.is_empty()
+        !self.right.of(wire.0 as usize).is_empty()
     }
 
     /// The horizontal link through which all power goes to the `(#)` of a transition, and to nothing else: its place, and how
@@ -496,15 +570,14 @@ impl<'t> Grid<'t> {
     pub fn link_before_end(&self) -> Option<(TextRange, u32)> {
         let mut ends = self.placed.iter().filter(|it| it.element == Some(Element::HashCoil));
         let end = ends.next().filter(|_| ends.next().is_none())?;
-        let link = |wire: Wire| match self.wires[wire.0 as usize] {
-            Junction { ref left, ref right, .. } if wire != Wire::RAIL && left.len() == 1 && right.len() == 1 => {
-                self.left_of(wire).next().filter(|it| it.element == Some(Element::HLink))
-            }
-            _ => None,
+        let link = |wire: Wire| {
+            let meets = |side: &Lists<u32>| side.of(wire.0 as usize).len();
+            let is_between_two = wire != Wire::RAIL && meets(&self.left) == 1 && meets(&self.right) == 1;
+            self.left_of(wire).next().filter(|it| is_between_two && it.element == Some(Element::HLink))
         };
-        let last = link(*end.inputs.first()?)?;
+        let last = link(*self.inputs(end).first()?)?;
         let (place, mut cells, mut at) = (last.range(), last.width, last);
-        while let Some(before) = at.inputs.first().and_then(|it| link(*it)).filter(|it| it.range() == place) {
+        while let Some(before) = self.inputs(at).first().and_then(|it| link(*it)).filter(|it| it.range() == place) {
             (cells, at) = (cells + before.width, before);
         }
         let all: u32 = self.placed.iter().filter(|it| it.range() == place).map(|it| it.width).sum();
@@ -513,16 +586,16 @@ impl<'t> Grid<'t> {
 
     /// What the input of a DFB at the right end of a wire is given.
     pub fn input_actual(&self, wire: Wire) -> Option<&Placed<'t>> {
-        self.placed.get(self.wires[wire.0 as usize].input_actual? as usize)
+        self.placed.get(*self.input_actuals.get(&wire)? as usize)
     }
 
     /// What the output of a DFB at the left end of a wire is given.
     pub fn output_actual(&self, wire: Wire) -> Option<&Placed<'t>> {
-        self.placed.get(self.wires[wire.0 as usize].output_actual? as usize)
+        self.placed.get(*self.output_actuals.get(&wire)? as usize)
     }
 
     fn left_of(&self, wire: Wire) -> impl Iterator<Item = &Placed<'t>> {
-        self.wires[wire.0 as usize].left.iter().map(|&it| &self.placed[it as usize])
+        self.left.of(wire.0 as usize).iter().map(|&it| &self.placed[it as usize])
     }
 
     /// The DFB whose output leads to an input of another one with less than the columns between them that there must be.
@@ -531,12 +604,12 @@ impl<'t> Grid<'t> {
             return None;
         }
         let is_before = |it: &&Placed<'t>| self.is_dfb(it) && it.end() + pl7::DFB_GAP.value > block.column;
-        block.inputs.iter().filter(|it| **it != Wire::RAIL).find_map(|&wire| {
+        self.inputs(block).iter().filter(|it| **it != Wire::RAIL).find_map(|&wire| {
             let beside = self.left_of(wire).find(is_before);
             // Less than two columns: there is room for one element.
             beside.or_else(|| {
                 let inner = self.left_of(wire).filter(|it| !it.is_block());
-                inner.flat_map(|it| &it.inputs).find_map(|&wire| self.left_of(wire).find(is_before))
+                inner.flat_map(|it| self.inputs(it)).find_map(|&wire| self.left_of(wire).find(is_before))
             })
         })
     }
@@ -553,21 +626,21 @@ impl<'t> Grid<'t> {
             return vec![all];
         }
         let mut sets = Sets::new(self.placed.len());
-        for wire in self.wires.iter().skip(1) {
-            let mut members = wire.left.iter().chain(&wire.right);
+        for wire in 1..self.wire_count() {
+            let mut members = self.left.of(wire).iter().chain(self.right.of(wire));
             if let Some(&one) = members.next() {
                 members.for_each(|&it| sets.join(one as usize, it as usize));
             }
         }
         let mut order = Order {
             grid: self,
-            wire_seen: vec![false; self.wires.len()],
+            wire_seen: vec![false; self.wire_count()],
             placed_seen: vec![false; self.placed.len()],
             out: Vec::with_capacity(self.placed.len()),
         };
         // What nothing uses is what the rest is evaluated for.
         for (index, it) in self.placed.iter().enumerate() {
-            if !it.outputs.iter().any(|wire| self.is_used(*wire)) {
+            if !self.outputs(it).iter().any(|wire| self.is_used(*wire)) {
                 order.visit(index);
             }
         }
@@ -604,21 +677,21 @@ impl<'t> Grid<'t> {
                 }
             }
             if it.is_actual() {
-                if it.inputs.is_empty() && it.outputs.is_empty() && !it.is_broken() {
+                if self.inputs(it).is_empty() && self.outputs(it).is_empty() && !it.is_broken() {
                     flaws.push((Flaw::FacesNoPin, it.range(), None));
                 }
                 continue;
             }
-            if !it.inputs.iter().any(|wire| self.is_fed(*wire)) {
+            if !self.inputs(it).iter().any(|wire| self.is_fed(*wire)) {
                 let is_box = matches!(element, Element::Block | Element::Operate);
                 flaws.push((if is_box { Flaw::BlockNotFed } else { Flaw::NotFed }, it.range(), None));
             }
             let is_loose = flaws.last().is_some_and(|last| last.0 == Flaw::NotFed && last.1 == it.range());
             // The outputs of a block may hang in the air (PL7:2808), and the right rail is an end.
-            let ends = it.end() >= columns || it.is_block() || it.outputs.is_empty();
+            let ends = it.end() >= columns || it.is_block() || self.outputs(it).is_empty();
             // A vertical link that ends at nothing is the mistake then.
             let is_open = open_links.contains(&it.range());
-            if !ends && !is_loose && !is_open && !it.outputs.iter().any(|wire| self.is_used(*wire)) {
+            if !ends && !is_loose && !is_open && !self.outputs(it).iter().any(|wire| self.is_used(*wire)) {
                 flaws.push((Flaw::LeadsNowhere, it.range(), None));
             }
         }
@@ -634,19 +707,20 @@ impl<'t> Grid<'t> {
         if self.is_beyond_reason() {
             return;
         }
-        for (index, wire) in self.wires.iter().enumerate().skip(1) {
-            if wire.left.len() < 2 || !wire.left.iter().any(|&it| self.placed[it as usize].is_link()) {
+        for index in 1..self.wire_count() {
+            let left = self.left.of(index);
+            if left.len() < 2 || !left.iter().any(|&it| self.placed[it as usize].is_link()) {
                 continue;
             }
             // Wires that give this one power through links alone, from right to left.
-            let mut sources = vec![false; self.wires.len()];
+            let mut sources = vec![false; self.wire_count()];
             sources[index] = true;
             let mut chain = vec![index];
             let mut at = 0;
             while let Some(&from) = chain.get(at) {
                 at += 1;
                 for it in self.links_left_of(from) {
-                    for input in &it.inputs {
+                    for input in self.inputs(it) {
                         if !std::mem::replace(&mut sources[input.0 as usize], true) {
                             chain.push(input.0 as usize);
                         }
@@ -654,24 +728,24 @@ impl<'t> Grid<'t> {
                 }
             }
             // Those among them that serve nothing else.
-            let mut private = vec![false; self.wires.len()];
+            let mut private = vec![false; self.wire_count()];
             private[index] = true;
             for _ in 0..self.layout.columns() {
                 for &it in &chain {
                     let serves = |right: &u32| {
                         let right = &self.placed[*right as usize];
-                        right.is_link() && right.outputs.iter().all(|it| private[it.0 as usize])
+                        right.is_link() && self.outputs(right).iter().all(|it| private[it.0 as usize])
                     };
-                    private[it] = private[it] || it != 0 && self.wires[it].right.iter().all(serves);
+                    private[it] = private[it] || it != 0 && self.right.of(it).iter().all(serves);
                 }
             }
             for &end in chain.iter().filter(|it| private[**it]) {
-                for &last in &self.wires[end].left {
+                for &last in self.left.of(end) {
                     let it = &self.placed[last as usize];
                     let is_test = it.element.is_some_and(Element::is_test) && !it.is_block();
                     if is_test && self.comes_from(last, &sources) {
                         let wire = chain.iter().flat_map(|&it| self.links_left_of(it)).find(|link| {
-                            link.column == it.column && link.inputs.iter().all(|it| sources[it.0 as usize])
+                            link.column == it.column && self.inputs(link).iter().all(|it| sources[it.0 as usize])
                         });
                         flaws.push((Flaw::Bypassed, it.range(), wire.map(Placed::range)));
                     }
@@ -691,7 +765,7 @@ impl<'t> Grid<'t> {
     }
 
     fn links_left_of(&self, wire: usize) -> impl Iterator<Item = &Placed<'t>> {
-        self.wires[wire].left.iter().map(|&it| &self.placed[it as usize]).filter(|it| it.is_link())
+        self.left.of(wire).iter().map(|&it| &self.placed[it as usize]).filter(|it| it.is_link())
     }
 
     /// Whether all power of an element comes through one of the wires.
@@ -707,8 +781,8 @@ impl<'t> Grid<'t> {
             if it.is_block() || it.element.is_none() {
                 return false;
             }
-            for wire in it.inputs.iter().filter(|it| !wires[it.0 as usize]) {
-                let left = &self.wires[wire.0 as usize].left;
+            for wire in self.inputs(it).iter().filter(|it| !wires[it.0 as usize]) {
+                let left = self.left.of(wire.0 as usize);
                 if *wire == Wire::RAIL || left.is_empty() {
                     return false;
                 }
@@ -742,9 +816,9 @@ impl Order<'_, '_> {
                         continue;
                     }
                     tasks.push(Task::Leave(it));
-                    for wire in self.grid.placed[it].inputs.iter().rev() {
+                    for wire in self.grid.inputs.of(it).iter().rev() {
                         if !std::mem::replace(&mut self.wire_seen[wire.0 as usize], true) {
-                            let left = &self.grid.wires[wire.0 as usize].left;
+                            let left = self.grid.left.of(wire.0 as usize);
                             tasks.extend(left.iter().rev().map(|it| Task::Enter(*it as usize)));
                         }
                     }
@@ -823,14 +897,14 @@ mod tests {
         assert_eq!(order(rows), ["R U %C8 D"]);
         with(rows, |grid| {
             let block = grid.placed.iter().find(|it| it.is_block()).expect("a block");
-            let fed: Vec<bool> = block.inputs.iter().map(|it| grid.is_fed(*it)).collect();
-            let used: Vec<bool> = block.outputs.iter().map(|it| grid.is_used(*it)).collect();
+            let fed: Vec<bool> = grid.inputs(block).iter().map(|it| grid.is_fed(*it)).collect();
+            let used: Vec<bool> = grid.outputs(block).iter().map(|it| grid.is_used(*it)).collect();
             assert_eq!((fed, used), (vec![true, false, true], vec![false, true, false]));
         });
         assert_eq!(flaws(rows), []);
         // What stands in a row below ends the block.
         let rows = "OPEN_CONTACT(R),BLOCK(%C8),EMPTY_CELL(7);\nOPEN_CONTACT(A),H_LINK(9),COIL(X);";
-        assert_eq!(with(rows, |grid| grid.placed[1].inputs.len()), 1);
+        assert_eq!(with(rows, |grid| grid.inputs(&grid.placed[1]).len()), 1);
     }
 
     #[test]

@@ -8,7 +8,7 @@
 //! are in the last column. That the jumps of a network are taken behind its coils is assumed.
 
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, ToSmolStr as _};
 
 use super::pl7::{self, Kind, Pl7};
@@ -122,12 +122,16 @@ impl Lowering {
         let grid = Grid::new(rung, self.layout);
         // The power at the end of a receptivity of PL7-2 is what the transition takes.
         let is_open = self.layout == Layout::Pl72 && self.is_transition;
-        let ends = |range: TextRange| {
-            let last = self.layout.columns() - 1;
-            is_open && grid.placed.iter().any(|it| it.range() == range && it.end() >= last)
-        };
-        let is_end = |flaw: Flaw, range: TextRange| flaw == Flaw::LeadsNowhere && ends(range);
-        let flaws: Vec<_> = grid.flaws().into_iter().filter(|it| !is_end(it.0, it.1)).collect();
+        let last = self.layout.columns() - 1;
+        let ends = grid.placed.iter().filter(|it| is_open && it.end() >= last).map(Placed::range);
+        let ends: FxHashSet<TextRange> = ends.collect();
+        let is_end = |flaw: Flaw, range: TextRange| flaw == Flaw::LeadsNowhere && ends.contains(&range);
+        let mut flaws = grid.flaws();
+        if !flaws.is_empty() && !grid.is_read() {
+            // The other cells may stand elsewhere than they seem to.
+            flaws.clear();
+        }
+        let flaws: Vec<_> = flaws.into_iter().filter(|it| !is_end(it.0, it.1)).collect();
         for (flaw, range, related) in flaws {
             self.flaw(flaw, range).related.extend(related.map(|it| (it, "this wire goes round it")));
         }
@@ -195,13 +199,13 @@ impl Lowering {
         }
         for &index in elements {
             let it = &grid.placed[index];
-            if let Some((object, range)) = self.coil(it, run.at(it)) {
+            if let Some((object, range)) = self.coil(it, run.at(grid, it)) {
                 coils.push(Use { object, network: number, range });
             }
         }
         for &index in elements {
             let it = &grid.placed[index];
-            self.leave(it, run.at(it));
+            self.leave(it, run.at(grid, it));
         }
     }
 
@@ -216,13 +220,13 @@ impl Lowering {
                 run.tests.insert(index, value);
             }
             self.conduct(grid, index, run);
-            self.coil(it, run.at(it));
+            self.coil(it, run.at(grid, it));
         }
         for &index in elements {
             let it = &grid.placed[index];
-            self.leave(it, run.at(it));
+            self.leave(it, run.at(grid, it));
             if self.is_transition && it.end() + 1 >= self.layout.columns() {
-                for &wire in it.outputs.iter().filter(|it| !grid.is_used(**it)) {
+                for &wire in grid.outputs(it).iter().filter(|it| !grid.is_used(**it)) {
                     self.take(run.power[Grid::index(wire)]);
                 }
             }
@@ -244,6 +248,8 @@ impl Lowering {
             return Some(match it.cell.comparison() {
                 Some(Expr::Bin(expr)) if self.layout == Layout::Pl72 => self.pl7.word_comparison(&expr),
                 Some(expr) => match self.pl7.expr(&expr) {
+                    // What was not read may have made it a comparison.
+                    (_, Kind::Number | Kind::Float) if it.is_broken() => self.pl7.b.exprs().opaque(),
                     (_, Kind::Number | Kind::Float) => {
                         let message = "a comparison block takes a comparison, not a number".to_owned();
                         self.operand_type(message, &expr)
@@ -297,7 +303,7 @@ impl Lowering {
     /// Lets power through an element, and executes blocks, operations and calls.
     fn conduct(&mut self, grid: &Grid<'_>, index: usize, run: &mut Run) {
         let it = &grid.placed[index];
-        let before = run.at(it);
+        let before = run.at(grid, it);
         let through = match it.element {
             Some(Element::HLink | Element::ShortCircuit) => before,
             Some(Element::Actual) => return,
@@ -316,7 +322,7 @@ impl Lowering {
                 self.pl7.b.exprs().and(before, value)
             }
         };
-        for &wire in &it.outputs {
+        for &wire in grid.outputs(it) {
             run.join(&mut self.pl7, wire, through);
         }
     }
@@ -330,7 +336,7 @@ impl Lowering {
         match (place, self.layout.block_of(it.cell)) {
             (Some((object, at)), Some(block)) if is_block => {
                 let mut is_driven = false;
-                for (&wire, name) in it.inputs.iter().zip(block.inputs()) {
+                for (&wire, name) in grid.inputs(it).iter().zip(block.inputs()) {
                     // An input without a wire is 0 (PL7:2813).
                     if grid.is_fed(wire) {
                         is_driven = true;
@@ -345,7 +351,7 @@ impl Lowering {
                 if !is_driven {
                     self.pl7.b.touch(object, Mode::Drive(Pin::Whole), at);
                 }
-                for (row, &wire) in it.outputs.iter().enumerate().filter(|it| grid.is_used(*it.1)) {
+                for (row, &wire) in grid.outputs(it).iter().enumerate().filter(|it| grid.is_used(*it.1)) {
                     let value = match block.outputs().get(row) {
                         Some(name) => self.output(object, name, at),
                         None => Exprs::FALSE,
@@ -364,7 +370,7 @@ impl Lowering {
                         self.operand_type(format!("`{text}` is no function block"), &operand);
                     }
                 }
-                for &wire in it.outputs.iter().filter(|it| grid.is_used(**it)) {
+                for &wire in grid.outputs(it).iter().filter(|it| grid.is_used(**it)) {
                     let value = self.pl7.b.exprs().opaque();
                     run.join(&mut self.pl7, wire, value);
                 }
@@ -379,7 +385,7 @@ impl Lowering {
                 self.pl7.expr(&parameter);
             }
         }
-        for (_, &wire) in shape.outputs().iter().zip(&it.outputs).filter(|it| grid.is_used(*it.1)) {
+        for (_, &wire) in shape.outputs().iter().zip(grid.outputs(it)).filter(|it| grid.is_used(*it.1)) {
             let value = self.pl7.b.exprs().opaque();
             run.join(&mut self.pl7, wire, value);
         }
@@ -407,10 +413,9 @@ impl Lowering {
     /// A block under a symbol: an instance of a DFB, as far as it shows. It is called in each scan of the rung.
     fn instance(&mut self, grid: &Grid<'_>, it: &Placed<'_>, name: &str, at: TextRange, run: &mut Run) {
         let mut actuals = Vec::new();
-        let is_read =
-            *run.is_read.get_or_insert_with(|| grid.placed.iter().all(|it| it.element.is_some() && !it.is_broken()));
+        let is_read = *run.is_read.get_or_insert_with(|| grid.is_read());
         let wired = if is_read { Given::Wire } else { Given::Unknown };
-        for (row, &wire) in (0..).zip(&it.inputs) {
+        for (row, &wire) in (0..).zip(grid.inputs(it)) {
             if let Some(operand) = grid.input_actual(wire).and_then(|it| it.cell.operand()) {
                 actuals.push(self.pl7.actual(Slot::Left(row), &operand));
             } else if grid.is_fed(wire) && (row == 0 || wire != Wire::RAIL) {
@@ -419,7 +424,7 @@ impl Lowering {
                 actuals.push(Actual { slot: Slot::Left(row), anchor, given: wired });
             }
         }
-        for (row, &wire) in (0..).zip(&it.outputs) {
+        for (row, &wire) in (0..).zip(grid.outputs(it)) {
             if let Some(operand) = grid.output_actual(wire).and_then(|it| it.cell.operand()) {
                 actuals.push(self.pl7.actual(Slot::Right(row), &operand));
             } else if grid.is_used(wire) {
@@ -498,10 +503,6 @@ impl Lowering {
             Some(Element::Jump) => {
                 if let Some(label) = it.cell.label() {
                     self.pl7.jump(label.text(), label.text_range(), when, range);
-                } else if let Some(Expr::Name(name)) = it.cell.operand()
-                    && let Some(name) = name.name()
-                {
-                    self.pl7.jump(name.text(), name.text_range(), when, range);
                 }
             }
             Some(Element::Return) => self.pl7.leave(when, Leave::Subroutine, range),
@@ -557,8 +558,8 @@ impl Lowering {
 
 impl Run {
     /// Power at the left edge of an element.
-    fn at(&self, it: &Placed<'_>) -> ExprId {
-        it.inputs.first().map_or(Exprs::FALSE, |it| self.power[Grid::index(*it)])
+    fn at(&self, grid: &Grid<'_>, it: &Placed<'_>) -> ExprId {
+        grid.inputs(it).first().map_or(Exprs::FALSE, |it| self.power[Grid::index(*it)])
     }
 
     fn join(&mut self, pl7: &mut Pl7, wire: Wire, value: ExprId) {
@@ -760,6 +761,23 @@ mod tests {
         assert_eq!(flaws(&part(receptivity, Part::Main)), []);
         let section = format!("LD : MAST - MAIN\n{receptivity}");
         assert_eq!(flaws(&part(&section, Part::Main)), [Flaw::HashOutsideTransition]);
+    }
+
+    /// What was not read may be why the rest stands where it does: one mistake, one finding.
+    #[test]
+    fn a_rung_that_was_not_read_has_no_flaws() {
+        for row in [
+            "OPEN_CONTACT(%M0),H_LINK(x),COIL(%M1);",
+            "OPEN_CONTACT(%M0),H_LINK(3),FOO,COIL(%M1);",
+            "COMPARE %MW0 => 5 END_BLOCK,H_LINK(8),COIL(%M1);",
+            "OPEN_CONTACT(%M0),H_LINK(9),JUMP_COIL(L10);",
+        ] {
+            let text = format!("RUNG\n{row}\nEND_RUNG");
+            let parse = crate::syntax::pl7::parse_ld(&text);
+            let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+            let found = lower(parse.syntax(), &text, entity, Language::Pl7Ld);
+            assert_eq!((parse.errors().len(), found.oddities.len(), found.jumps.len()), (1, 0, 0), "{row}");
+        }
     }
 
     #[test]

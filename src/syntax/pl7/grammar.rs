@@ -249,7 +249,11 @@ impl<'t> Grammar<'_, 't> {
             && ["MAST", "FAST"].iter().any(|it| self.p.at_text(it))
     }
 
+    /// One that is understood starts a unit: what stands further down is none.
     pub(super) fn heading(&mut self) {
+        if self.p.position() > 0 {
+            self.error("this heading names no part of a program");
+        }
         let m = self.p.start();
         self.p.bump();
         while !self.p.newline_before() && !self.p.at(SentenceStart) && !self.p.at(Bang) {
@@ -348,11 +352,16 @@ impl<'t> Grammar<'_, 't> {
         } else if self.p.newline_before() && self.p.position() > 0 {
             self.error_at(self.p.previous_range(), format!("expected {what} after this"));
         } else {
-            let found = self.p.current_text();
-            let end = found.char_indices().nth(24).map_or(found.len(), |(at, _)| at);
-            let found = if self.p.at_end() { "the end" } else { &found[..end] };
-            self.error(format!("expected {what}, found `{found}`"));
+            self.unexpected(what);
         }
+    }
+
+    /// Reports the current token, in the place of which something else must stand.
+    pub(super) fn unexpected(&mut self, what: &str) {
+        let found = self.p.current_text();
+        let end = found.char_indices().nth(24).map_or(found.len(), |(at, _)| at);
+        let found = if self.p.at_end() { "the end" } else { &found[..end] };
+        self.error(format!("expected {what}, found `{found}`"));
     }
 
     /// The current token as an error node, without a report.

@@ -26,7 +26,7 @@ impl Grammar<'_, '_> {
 
     /// What stands between rungs and is none, up to the next one.
     pub(super) fn between_rungs(&mut self) {
-        self.expected("`RUNG`");
+        self.unexpected("`RUNG`");
         let m = self.p.start();
         self.p.bump();
         while !(self.p.at_end()
@@ -168,10 +168,14 @@ impl Grammar<'_, '_> {
     fn cell_operand(&mut self, shape: Shape) {
         let is_optional = matches!(shape, Shape::Bare | Shape::Count);
         if !self.p.eat(LParen) {
-            if !is_optional {
-                self.expected("`(`");
+            if is_optional {
+                return;
             }
-            return;
+            self.expected("`(`");
+            // Where the other one closes the cell, this one alone is missing.
+            if self.p.nth(1) != Some(RParen) {
+                return;
+            }
         }
         let is_read = match shape {
             Shape::Count => {
@@ -184,10 +188,11 @@ impl Grammar<'_, '_> {
                 let is_label = self.p.at(LabelAddress);
                 if is_label {
                     self.p.bump();
-                } else if self.p.at(Ident) && self.keyword().is_none() {
-                    self.name();
+                } else if !self.p.at(RParen) {
+                    self.expected("a label, such as `%L10`");
+                    self.skip_cell();
                 }
-                is_label || !self.p.at(RParen)
+                is_label
             }
             Shape::Subroutine => {
                 let is_call = matches!(self.p.current(), Some(Ident | ObjectAddress))
@@ -210,7 +215,7 @@ impl Grammar<'_, '_> {
         if !is_read {
             self.expected(match shape {
                 Shape::Count => "a number of cells",
-                Shape::Label => "a label",
+                Shape::Label => "a label, such as `%L10`",
                 Shape::Subroutine => "a subroutine",
                 Shape::Expression => "an object or expression",
                 _ => "an object",

@@ -417,10 +417,10 @@ mod frame {
             assert_eq!(root.headings().map(|it| text(&it)).collect::<Vec<_>>(), [heading]);
             assert_eq!(root.sentences().count(), 1);
         }
-        assert_eq!(
-            shape(&legal(parse_st("ST : MAST - A\n%M0:=1;\nST : MAST - B\n%M1:=1;"))).matches("Heading").count(),
-            2
-        );
+        // No unit starts at the second one.
+        let parse = parse_st("ST : MAST - A\n%M0:=1;\nST : SR4\n%M1:=1;");
+        assert_eq!(errors(&parse), ["ST: this heading names no part of a program"]);
+        assert_eq!(shape(&parse).matches("Heading").count(), 2);
     }
 
     #[test]
@@ -886,7 +886,15 @@ fn one_error_for_what_is_wrong_in_a_rung() {
     );
     assert_eq!(
         errors(&parse_ld("%M0 := 5;\n! LD %M1\nRUNG\nEND_RUNG\nELSE")),
-        ["%M0: expected `RUNG`, found `%M0`", "END_RUNG: expected `RUNG` after this"]
+        ["%M0: expected `RUNG`, found `%M0`", "ELSE: expected `RUNG`, found `ELSE`"]
+    );
+    assert_eq!(ld_errors("OPEN_CONTACT %M0),COIL(%M1);"), ["%M0: expected `(`, found `%M0`"]);
+    assert_eq!(ld_errors("OPEN_CONTACT %M0,COIL(%M1);"), ["%M0: expected `(`, found `%M0`"]);
+    assert_eq!(ld_errors("JUMP_COIL(L10);"), ["L10: expected a label, such as `%L10`, found `L10`"]);
+    assert_eq!(ld_errors("JUMP_COIL();"), ["): expected a label, such as `%L10`, found `)`"]);
+    assert_eq!(
+        errors(&parse_ld("LD : MAST - SR1\nRUNG\nEND_RUNG\nLD : SR2\nRUNG\nEND_RUNG")),
+        ["LD: this heading names no part of a program"]
     );
 }
 

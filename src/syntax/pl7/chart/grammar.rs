@@ -363,12 +363,23 @@ impl<'t> Grammar<'_, 't> {
         let m = self.p.start();
         self.p.bump();
         let mut language = None;
+        // Behind its place, no name of it follows.
+        let mut is_placed = false;
         loop {
             match (self.p.current(), self.word()) {
-                (_, Some(Word::At)) => self.place(),
-                (_, Some(Word::From | Word::To)) => self.transition_end(),
+                (_, Some(Word::At)) => {
+                    self.place();
+                    is_placed = true;
+                }
+                (_, Some(Word::From | Word::To)) => {
+                    self.transition_end();
+                    is_placed = true;
+                }
                 (Some(LParen), _) => {
                     self.p.bump();
+                    if CodeLanguage::of(self.p.current_text()).is_none() {
+                        self.expected("`LD`, `IL` or `ST`");
+                    }
                     while !matches!(self.p.current(), None | Some(RParen | Colon)) && !self.at_stop() {
                         language = language.or(CodeLanguage::of(self.p.current_text()));
                         self.p.bump();
@@ -379,7 +390,7 @@ impl<'t> Grammar<'_, 't> {
                     }
                 }
                 (Some(CharString | Number | Arrow), _) => self.p.bump(),
-                (Some(Ident | ObjectAddress), None) => self.p.bump(),
+                (Some(Ident | ObjectAddress), None) if !is_placed => self.p.bump(),
                 _ => break,
             }
         }
@@ -453,7 +464,10 @@ impl<'t> Grammar<'_, 't> {
         for (word, name) in [(Word::From, "`FROM`"), (Word::To, "`TO`")] {
             if !self.eat_word(word) {
                 self.expected(name);
-                return;
+                // A cell in its place is the end that the word belongs to.
+                if !self.p.at(LParen) {
+                    return;
+                }
             }
             self.page_cell();
             while self.p.at(Comma) && self.p.nth(1) == Some(LParen) {
@@ -545,7 +559,7 @@ impl<'t> Grammar<'_, 't> {
             if self.at_keyword(Keyword::Rung) {
                 self.rungs();
             } else {
-                self.expected("`RUNG`");
+                self.unexpected("`RUNG`");
                 self.skip_to(|g| g.at_keyword(Keyword::Rung));
             }
         }

@@ -197,6 +197,22 @@ fn depth_and_length_are_survived() {
     }
 }
 
+/// Each mistake is said once, and what stands behind it is read.
+#[test]
+fn mistakes_around_places() {
+    for (text, expected) in [
+        ("TRANSITION (ST) AT (C 1,L 2) %M0 END_TRANSITION", "expected `:`, found `%M0`"),
+        ("TRANSITION (SFC) AT (C 1,L 2) : %M0 END_TRANSITION", "expected `LD`, `IL` or `ST`, found `SFC`"),
+        ("T_S_OR_LINK (C 1,L 2) TO (C 1,L 3)", "expected `FROM`, found `(`"),
+        ("T_S_OR_LINK FROM (C 1,L 2) (C 1,L 3)", "expected `TO`, found `(`"),
+        ("ACTION (N1,LD) : OPEN_CONTACT(%M0) END_ACTION", "expected `RUNG`, found `OPEN_CONTACT`"),
+    ] {
+        assert_eq!(errors(text), [expected], "{text}");
+    }
+    let parse = parse("TRANSITION (ST) AT (C 1,L 2) %M0 END_TRANSITION");
+    assert!(all::<Transition>(&parse)[0].syntax().descendants().any(|it| it.kind() == SyntaxKind::ObjectRef));
+}
+
 const PIECES: &str = "\\PC{0,6}|[ \n]|STEP |INITIAL_STEP 0 |END_STEP|ACTION |\\(N1,ST\\) : |\\(P0,LD\\) :|END_ACTION|TRANSITION |FROM |TO |\
     AT \\(C 4,L 3\\)|\\(ST\\)|:=|:|;|,|END_TRANSITION|T_S_OR_LINK |\\[|\\]|H_LINK |PAGE 0\n|END_PAGE|DEST_CONNECTOR |COMMENT |\
     \\(\\*PHRASE\\*\\)|\\(\\*END_PHRASE\\*\\)|%M0|%Q2\\.0 := %I1\\.0;|LD %M0 |X1|3|NB_PAGES = 8|FOO |RUNG|END_RUNG|IF |\\(|\\)";
