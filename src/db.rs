@@ -498,7 +498,7 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Arc<
     let part = step.part(&skeleton);
     let part = part.as_ref().map(|it| ProgramCx::new(it, settings, &target));
     let of_objects = run_program_rules(part.as_ref().unwrap_or(&cx), |it| matches!(it, Check::Object(_)));
-    let of_objects = db.memory().keep(step, of_objects, || whole.summary());
+    let of_objects = db.memory().keep(step, of_objects, &whole);
     ran.findings.extend(of_objects.findings);
     ran.failed.extend(of_objects.failed);
     ran

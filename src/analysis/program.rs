@@ -423,8 +423,8 @@ impl<'a> ProgramIndex<'a> {
     }
 
     /// What is kept of its objects, if anything is.
-    pub(super) fn islands(&self) -> Option<&Islands> {
-        self.islands.get().map(Arc::as_ref)
+    pub(crate) fn known(&self) -> Option<&Arc<Islands>> {
+        self.islands.get()
     }
 
     pub fn skeleton(&self) -> &Rc<Skeleton<'a>> {
@@ -483,7 +483,7 @@ impl<'a> ProgramIndex<'a> {
 
     fn access(&self) -> &Access {
         self.access.get_or_init(|| {
-            if let Some(islands) = self.islands() {
+            if let Some(islands) = self.known() {
                 return islands.access(self);
             }
             let mut addressed = Modes::default();

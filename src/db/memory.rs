@@ -47,6 +47,15 @@ struct Kept {
     subjects: Vec<Vec<u32>>,
 }
 
+impl Kept {
+    /// What is known already of a program that was judged as a whole.
+    fn of(program: &ProgramIndex<'_>, ran: &Ran<Arc<Finding<Site>>>) -> Option<Self> {
+        let islands = program.known()?.clone();
+        let subjects = ran.findings.iter().map(|it| islands.at(it.place)).collect();
+        Some(Self { islands, subjects })
+    }
+}
+
 /// From what is known to the findings about a program as it is now.
 pub(super) struct Step {
     key: Key,
@@ -95,12 +104,12 @@ impl Memory {
         &self,
         step: Step,
         ran: Ran<Arc<Finding<Site>>>,
-        summary: impl FnOnce() -> Summary,
+        program: &ProgramIndex<'_>,
     ) -> Ran<Arc<Finding<Site>>> {
         let Step { key, target, facts, outline, from } = step;
         let state = match from {
             Some(from) => from.join(facts, outline, ran),
-            None => State { target, facts, outline, summary: summary(), ran, kept: None },
+            None => State { kept: Kept::of(program, &ran), target, facts, outline, summary: program.summary(), ran },
         };
         let ran = state.ran.clone();
         let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner);
@@ -128,6 +137,10 @@ impl State {
         by: &Moved,
         program: &ProgramIndex<'_>,
     ) -> Option<(Kept, FxHashSet<u32>)> {
+        // Another state has shown what can be said of all objects now.
+        if program.known().is_some() && program.summary() != self.summary {
+            return None;
+        }
         let old = || Skeleton::new(program.family, self.facts.iter().map(AsRef::as_ref).collect());
         let mut kept = self.kept.take().unwrap_or_else(|| {
             let islands = Islands::new(&old(), &self.facts);

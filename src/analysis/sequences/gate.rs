@@ -41,7 +41,7 @@ pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
         return true;
     }
     let stores = |it: &&Ask| matches!(it.how, How::Set | How::Reset);
-    let mut steps = Steps { islands: program.islands(), given: FxHashMap::default() };
+    let mut steps = Steps { islands: program.known().map(AsRef::as_ref), given: FxHashMap::default() };
     for (unit, facts, code) in all() {
         code.asks.iter().filter(stores).for_each(|it| steps.insert(bit(unit, facts, it.object), it.how));
     }

@@ -137,12 +137,12 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
+        #![proptest_config(ProptestConfig::with_cases(24))]
 
         #[test]
         fn from_edit_to_edit(
             first in text(),
-            edits in prop::collection::vec((any::<prop::sample::Index>(), 0..40usize, prop::collection::vec(line(), 0..4)), 1..12),
+            edits in prop::collection::vec((any::<prop::sample::Index>(), 0..40usize, prop::collection::vec(line(), 0..4)), 1..8),
             pad in prop::sample::select(vec![0, SAMPLE - 2000, SAMPLE]),
         ) {
             let mut text = " ".repeat(pad) + &first;
