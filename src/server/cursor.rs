@@ -14,7 +14,7 @@ use crate::model::UnitModel;
 use crate::model::chart::{Graph, StepName};
 use crate::model::dfb::Item;
 use crate::model::entity::{BlockKind, Entity, Family, Part};
-use crate::model::layout::{DataType, Elementary, Field};
+use crate::model::layout::{DataType, Elementary, Field, Place};
 use crate::model::object::{Area, Class, Footprint, Object, Rights, Type, pl7, pl72, step7};
 use crate::model::symbols::key;
 use crate::model::unit::{Callee, Mode};
@@ -186,8 +186,10 @@ impl Named {
             let fact = facts.objects.get(object as usize)?;
             Some(Self { object: fact.object.clone(), only_in: (fact.hash == 0).then_some(unit) })
         };
+        // The whole of it, not a part.
         let local = |name: &str| {
-            let found = facts.objects.iter().position(|it| is_local(&it.object) && is_named(&it.object, name));
+            let is_it = |it: &Object| is_local(it) && key(it.text.trim_start_matches('#')) == key(name);
+            let found = facts.objects.iter().position(|it| is_it(&it.object));
             found.and_then(|it| of_unit(u32::try_from(it).ok()?))
         };
         match &target.what {
@@ -196,11 +198,11 @@ impl Named {
                 let name = &model.fields().get(*at as usize)?.name;
                 let found = of_data_block(facts, name, index).map(|object| Self { object, only_in: None });
                 let is_data = facts.entity.block_kind().is_some_and(BlockKind::is_data);
-                found.or_else(|| local(name)).or_else(|| (!is_data).then(|| Self::unused(name, unit)))
+                found.or_else(|| local(name)).or_else(|| (!is_data).then(|| Self::declared(name, unit)))
             }
             What::Item(at) => {
                 let name = &model.interface.as_ref()?.items.get(*at as usize)?.name;
-                local(name).or_else(|| Some(Self::unused(name, unit)))
+                local(name).or_else(|| Some(Self::declared(name, unit)))
             }
             What::Symbol(at) => {
                 let object = model.symbols.get(*at as usize)?.object.clone()?;
@@ -214,8 +216,8 @@ impl Named {
         }
     }
 
-    /// A name that a unit declares and never uses.
-    fn unused(name: &str, unit: u32) -> Self {
+    /// A name that a unit declares, and of which it uses parts at most.
+    fn declared(name: &str, unit: u32) -> Self {
         let object = Object { class: Class::LocalName, ..Object::symbol(name) };
         Self { object, only_in: Some(unit) }
     }
@@ -237,9 +239,12 @@ impl Named {
         };
         if let Some(unit) = self.only_in {
             let Some(&facts) = index.units.get(unit as usize) else { return Vec::new() };
+            let is_whole = is_local(&self.object) && !self.object.text.contains(['.', '[', ':']);
+            let name = self.object.text.trim_start_matches('#');
             let uses = facts.uses.iter().filter_map(|it| {
                 let object = &facts.objects.get(it.object as usize)?.object;
-                is_meant(object).then_some((object, GlobalUse { unit, mode: it.mode, it }))
+                let is_part = is_whole && is_local(object) && is_named(object, name);
+                (is_meant(object) || is_part).then_some((object, GlobalUse { unit, mode: it.mode, it }))
             });
             return uses.collect();
         }
@@ -320,7 +325,7 @@ fn of_data_block(facts: &UnitFacts, name: &str, index: &ProgramIndex<'_>) -> Opt
 }
 
 /// Where a data block, or the function block whose instance it is, declares the field that an object is or lies in.
-pub(super) fn field(object: &Object, index: &ProgramIndex<'_>) -> Option<Site> {
+pub(super) fn field(object: &Object, index: &ProgramIndex<'_>) -> Option<(Site, Place)> {
     let (block, place) = match &object.footprint.area {
         Area::Data(name) if object.is_fixed() => (name.clone(), index.layouts().of(name)?.at(object.footprint.start)?),
         _ => {
@@ -329,13 +334,13 @@ pub(super) fn field(object: &Object, index: &ProgramIndex<'_>) -> Option<Site> {
             (name, place)
         }
     };
-    let mut owner = place.of.unwrap_or(block);
+    let mut owner = place.of.clone().unwrap_or(block);
     // An instance has the fields of its function block, and a block of a type those of the type.
     for _ in 0..MOST_NESTED {
         let (unit, facts) = (0..).zip(&index.units).find(|it| it.1.entity.name() == Some(&owner))?;
         match facts.declared.as_deref() {
             Some(DataType::Named(of)) => owner = of.clone(),
-            _ => return Some(Site { unit, anchor: place.anchor }),
+            _ => return Some((Site { unit, anchor: place.anchor }, place)),
         }
     }
     None

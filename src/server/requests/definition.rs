@@ -75,12 +75,12 @@ pub(super) fn places(
         }
         Class::Step | Class::StepTime | Class::MacroStep => return steps(object, program, index),
         Class::Symbol => {
-            if let Some(site) = cursor::member(object, index) {
-                return program.places().of(site.0).into_iter().collect();
+            if let Some((site, _)) = cursor::member(object, index) {
+                return program.places().of(site).into_iter().collect();
             }
         }
         Class::CodeBlock | Class::Data => {
-            if let Some(site) = cursor::field(object, index) {
+            if let Some((site, _)) = cursor::field(object, index) {
                 return program.places().of(site).into_iter().collect();
             }
             if let Area::CodeBlock(name) | Area::Data(name) = &object.footprint.area {

@@ -128,10 +128,10 @@ fn of_called(cursor: &InUnit<'_>, target: &Target, called: &Called, index: &Prog
         (true, Some(tasks)) => {
             let _ = write!(out, "called in {calls}, runs in {tasks}");
         }
-        (false, None) => out.push_str(if unit.entity.block_kind().is_some_and(BlockKind::is_data) {
-            "data"
-        } else {
-            "run by the system"
+        (false, None) => out.push_str(match unit.entity.block_kind() {
+            Some(BlockKind::Udt) => "type",
+            Some(it) if it.is_data() => "data block",
+            _ => "run by the system",
         }),
         (false, Some(tasks)) => {
             let _ = write!(out, "runs in {tasks}");
@@ -170,11 +170,17 @@ fn of_object(
 ) -> String {
     let object = &named.object;
     let text = cursor.text(target.range);
-    let what = declared(cursor, object, index).unwrap_or_else(|| describe::kind(object));
+    let what = declared(cursor, &target.what, object, index).unwrap_or_else(|| describe::kind(object));
     let mut out = format!("**{text}**: {what}");
     let table = db::symbol_table(cursor.it.db, program.program);
     let written = object.text.split('[').next().unwrap_or(&object.text);
-    if let Some(symbol) = table.symbol(written).filter(|it| cursor::key_in_code(it) != cursor::key_in_code(text)) {
+    if let Some(mut symbol) = table.symbol(written).filter(|it| cursor::key_in_code(it) != cursor::key_in_code(text)) {
+        // The table knows addresses in capitals; names of fields are shown as they are.
+        if let (Some((head, tail)), Some((_, own))) = (symbol.rsplit_once('.'), written.rsplit_once('.'))
+            && tail.eq_ignore_ascii_case(own)
+        {
+            symbol = format!("{head}.{own}").into();
+        }
         let _ = write!(out, "  \nsymbol `{symbol}`");
     } else if let Some(address) = table.address(text.split('[').next().unwrap_or(text)) {
         let _ = write!(out, "  \naddress `{address}`");
@@ -236,7 +242,7 @@ fn write_uses(out: &mut String, named: &Named, index: &ProgramIndex<'_>) {
             }
         }
     }
-    if by_task.is_empty() && named.object.class != Class::CodeBlock {
+    if by_task.is_empty() && others.is_empty() && named.object.class != Class::CodeBlock {
         out.push_str("\n\nnot used by the program");
     }
     for (task, it) in &by_task {
@@ -253,14 +259,16 @@ fn write_uses(out: &mut String, named: &Named, index: &ProgramIndex<'_>) {
 }
 
 /// What a name is that a block declares, or has as an instance of a DFB.
-fn declared(cursor: &InUnit<'_>, object: &Object, index: &ProgramIndex<'_>) -> Option<String> {
+fn declared(cursor: &InUnit<'_>, what: &What, object: &Object, index: &ProgramIndex<'_>) -> Option<String> {
     if let Some(field) = cursor::declaration(cursor.model, object) {
         let word = section(field.section).unwrap_or(match field.section {
             Section::Temp => "temporary",
             _ => "static",
         });
         let whole = format!("{word} of type `{}`", field.ty);
-        let Some((_, path)) = object.text.split_once('.') else { return Some(whole) };
+        let Some((_, path)) = object.text.split_once('.').filter(|_| !matches!(what, What::Declaration(_))) else {
+            return Some(whole);
+        };
         let layout = cursor.unit.entity(cursor.it.db).name().and_then(|it| index.layouts().of(it));
         let place = layout.and_then(|it| it.place(&object.text)).and_then(|it| it.ty);
         let ty = place.map_or_else(String::new, |it| format!(" of type `{}`", it.name()));
@@ -270,6 +278,13 @@ fn declared(cursor: &InUnit<'_>, object: &Object, index: &ProgramIndex<'_>) -> O
     let own = cursor.model.interface.iter().flat_map(|it| &it.items).find(own);
     if let Some(item) = own {
         return Some(format!("{} of type `{}`", item.role.describe(), item.ty.describe()));
+    }
+    if object.class == Class::Data {
+        let (_, place) = cursor::field(object, index)?;
+        let is_whole = place.start == object.footprint.start && Some(place.bits) == object.ty.bits();
+        let part = if is_whole { "" } else { "part of " };
+        let ty = place.ty.map_or_else(String::new, |it| format!(" : {}", it.name()));
+        return Some(format!("{part}field `{}{ty}` in {}", place.path, describe::kind(object)));
     }
     if object.class != Class::Symbol {
         return None;
