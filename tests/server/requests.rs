@@ -342,7 +342,7 @@ fn symbols_of_blocks_and_fields_lead_to_what_they_name() {
         let answer = client.ask("textDocument/references", params);
         locations(&client, &answer)
     };
-    assert_eq!(find("FUNCTION_BLOCK FB 1", 16), ["a.awl:40:13-40:20"], "the calls of the block of a heading");
+    assert_eq!(find("FUNCTION_BLOCK FB 1", 16), ["a.awl:41:13-41:20"], "the calls of the block of a heading");
     assert_eq!(find("state : UDT", 1), ["a.awl:28:13-28:22", "a.awl:29:13-29:25"], "parts of a structure");
     assert_eq!(find("Speed : INT", 1), ["a.awl:30:13-30:25", "a.awl:36:13-36:23"]);
     let mut shown = |needle: &str, within: usize| hover(&mut client, "a.awl", BLOCKS, needle, within);
@@ -375,7 +375,7 @@ fn symbols_of_blocks_and_fields_lead_to_what_they_name() {
 
 #[test]
 fn members_tables_and_steps_are_found() {
-    let variables = VARIABLES.replace("END_VAR\n", "    Table AT %MW20:5 : AR_W (*recipe*);\nEND_VAR\n");
+    let variables = VARIABLES.replace("END_VAR\n", "    Table AT %MW20 : WORD (*recipe*);\nEND_VAR\n");
     let main = MAIN.replace("! SR3;", "! SR3;\n! %MW1 := Table[%MW2];");
     let old = "GR7 : PL7-2 - SEQ
 PAGE 0

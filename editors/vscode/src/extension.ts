@@ -10,10 +10,17 @@ import {
   window,
   workspace,
 } from 'vscode';
-import { LanguageClient, type LanguageClientOptions, RevealOutputChannelOn, TransportKind } from 'vscode-languageclient/node';
+import { LanguageClient, type LanguageClientOptions, RevealOutputChannelOn, State, TransportKind } from 'vscode-languageclient/node';
 import { RESTARTING, type Settings, advice, languagesOf, pageOf, program, selector } from './options';
 
-let client: LanguageClient | undefined;
+/** The user is told once that the server does not start, by `tell`; the library would say so too. */
+class Client extends LanguageClient {
+  override error(message: string, data?: unknown, showNotification?: boolean | 'force'): void {
+    super.error(message, data, this.state === State.Running ? showNotification : false);
+  }
+}
+
+let client: Client | undefined;
 /** Starts and stops follow one another. */
 let queue: Promise<void> = Promise.resolve();
 
@@ -74,7 +81,7 @@ async function start(context: ExtensionContext, log: LogOutputChannel): Promise<
     initializationFailedHandler: () => false,
   };
   const server = { command, transport: TransportKind.stdio, options: { env } };
-  const next = new LanguageClient('plclint', 'plclint', { ...server, args }, options);
+  const next = new Client('plclint', 'plclint', { ...server, args }, options);
   client = next;
   try {
     await next.start();
