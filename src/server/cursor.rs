@@ -295,8 +295,8 @@ impl Called {
 
 /// The unit of a type of DFBs.
 pub(super) fn dfb(ty: &str, index: &ProgramIndex<'_>) -> Option<u32> {
-    let is_it = |it: &&UnitFacts| matches!(&it.entity, Entity::Dfb { name } if key(name) == key(ty));
-    let at = index.units.iter().position(|it| is_it(&it))?;
+    let is_it = |it: &UnitFacts| matches!(&it.entity, Entity::Dfb { name } if key(name) == key(ty));
+    let at = index.units.iter().position(|it| is_it(it))?;
     u32::try_from(at).ok()
 }
 

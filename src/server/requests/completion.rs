@@ -224,7 +224,7 @@ impl<'s> Typed<'s> {
 /// Whether a name before a dot may be that of a whole with parts: `#motor`, `"Data"`, `DB 10`. `M 10` has bits.
 fn has_members(name: &str) -> bool {
     name.starts_with(['#', '«'])
-        || (name.starts_with('"') && name.matches('"').count() % 2 == 0)
+        || (name.starts_with('"') && name.matches('"').count().is_multiple_of(2))
         || name.get(..2).is_some_and(|it| it.eq_ignore_ascii_case("DB"))
             && name.get(2..).is_some_and(|it| it.starts_with(|it: char| it == ' ' || it.is_ascii_digit()))
 }
