@@ -279,6 +279,22 @@ const WORD: u32 = 16;
 /// Structures of structures, further than any tool lets them nest.
 const MOST_NESTED: usize = 64;
 
+/// As a declaration has it, the parts of a structure left out.
+impl fmt::Display for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Leaf(it) => f.write_str(it.name()),
+            Self::Text(longest) => write!(f, "STRING[{longest}]"),
+            Self::Array(dimensions, of) => {
+                let bounds: Vec<String> = dimensions.iter().map(|it| format!("{}..{}", it.first, it.last)).collect();
+                write!(f, "ARRAY[{}] OF {of}", bounds.join(", "))
+            }
+            Self::Struct(_, Some(name)) => name.fmt(f),
+            Self::Struct(_, None) => f.write_str("STRUCT"),
+        }
+    }
+}
+
 impl Shape {
     /// Size, where it is known.
     pub fn bits(&self) -> Option<u32> {
@@ -484,6 +500,21 @@ impl Layout {
             }
         }
         None
+    }
+
+    /// The fields of what lies behind a path; the indices of arrays are not looked at. An empty path is the whole.
+    pub fn inside(&self, path: &str) -> Option<&Self> {
+        let mut layout = self;
+        for name in path.split('.').filter(|it| !it.is_empty()) {
+            let name = name.split('[').next().unwrap_or(name).trim_matches(['#', '"', ' ']).to_lowercase();
+            let mut shape = &layout.fields.iter().find(|it| it.name == name)?.shape;
+            while let Shape::Array(_, of) = shape {
+                shape = of;
+            }
+            let Shape::Struct(inner, _) = shape else { return None };
+            layout = inner;
+        }
+        Some(layout)
     }
 
     /// What lies at a bit: the innermost field. `None` in a gap and behind the end.

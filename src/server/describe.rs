@@ -222,6 +222,70 @@ fn function(word: &str) -> Option<String> {
     Some(cited(&text, it.line))
 }
 
+/// Computations by what they compute, and with numbers of which type.
+fn s7_computation(op: awl::Op) -> Option<String> {
+    use awl::{ArithOp as A, Conversion as C, LogicOp as L, NumberType as N, Op, Relation as R, Width};
+    let number = |ty| match ty {
+        N::Int => "integers of 16 bits",
+        N::Dint => "integers of 32 bits",
+        N::Real => "floating-point numbers",
+    };
+    Some(match op {
+        Op::Compare(relation, ty) => {
+            let is = match relation {
+                R::Eq => "equal to",
+                R::Ne => "not equal to",
+                R::Gt => "greater than",
+                R::Lt => "less than",
+                R::Ge => "greater than or equal to",
+                R::Le => "less than or equal to",
+            };
+            format!("the RLO is 1 when accumulator 2 is {is} accumulator 1, as {}", number(ty))
+        }
+        Op::Arithmetic(operation, ty) => {
+            let does = match operation {
+                A::Add => "adds accumulator 1 to accumulator 2",
+                A::Sub => "subtracts accumulator 1 from accumulator 2",
+                A::Mul => "multiplies accumulator 2 by accumulator 1",
+                A::Div => "divides accumulator 2 by accumulator 1",
+            };
+            format!("{does}, as {}; the result is in accumulator 1", number(ty))
+        }
+        Op::WordLogic(operation, width) => {
+            let name = match operation {
+                L::And => "AND",
+                L::Or => "OR",
+                L::Xor => "exclusive OR",
+            };
+            let bits = if width == Width::Word { 16 } else { 32 };
+            format!("{name} of {bits} bits of the accumulators; the result is in accumulator 1")
+        }
+        Op::Convert(conversion) => {
+            let (from, to) = match conversion {
+                C::BcdToInt => ("BCD", "an integer of 16 bits"),
+                C::IntToBcd => ("an integer of 16 bits", "BCD"),
+                C::BcdToDint => ("BCD", "an integer of 32 bits"),
+                C::DintToBcd => ("an integer of 32 bits", "BCD"),
+                C::IntToDint => ("an integer of 16 bits", "one of 32 bits"),
+                C::DintToReal => ("an integer of 32 bits", "a floating-point number"),
+                C::Round => ("a floating-point number", "the nearest integer of 32 bits"),
+                C::RoundUp => ("a floating-point number", "the next integer of 32 bits above"),
+                C::RoundDown => ("a floating-point number", "the next integer of 32 bits below"),
+                C::Truncate => ("a floating-point number", "an integer of 32 bits, without what is behind the point"),
+                C::OnesComplementInt => ("16 bits", "their complement"),
+                C::OnesComplementDint => ("32 bits", "their complement"),
+                C::NegateInt => ("an integer of 16 bits", "its negative"),
+                C::NegateDint => ("an integer of 32 bits", "its negative"),
+                C::NegateReal => ("a floating-point number", "its negative"),
+                C::SwapBytesWord => ("16 bits", "its bytes in the other order"),
+                C::SwapBytesDword => ("32 bits", "its bytes in the other order"),
+            };
+            format!("makes of accumulator 1, {from}, {to}")
+        }
+        _ => return None,
+    })
+}
+
 fn s7_instruction(word: &str, op: awl::Op) -> Option<String> {
     use awl::Op;
     let text = match op {
@@ -262,8 +326,6 @@ fn s7_instruction(word: &str, op: awl::Op) -> Option<String> {
         Op::Enable => "enables the timer or counter for another start, on a rising edge of the RLO",
         Op::CountUp => "counts up, on a rising edge of the RLO",
         Op::CountDown => "counts down, on a rising edge of the RLO",
-        Op::Compare(..) => "compares accumulator 2 with accumulator 1; the RLO is the result",
-        Op::Arithmetic(..) => "computes accumulator 2 with accumulator 1; the result is in accumulator 1",
         Op::Modulo => "remainder of accumulator 2 divided by accumulator 1",
         Op::AddConstant => "adds a constant to accumulator 1",
         Op::Jump(awl::JumpIf::Always) => "jumps to the label",
@@ -295,9 +357,8 @@ fn s7_instruction(word: &str, op: awl::Op) -> Option<String> {
         Op::McrClose => "closes a zone of the master control relay",
         Op::McrActivate => "switches the master control relay on",
         Op::McrDeactivate => "switches the master control relay off",
-        Op::WordLogic(..) => "combines the accumulators bit by bit; the result is in accumulator 1",
         Op::Shift(_) => "shifts or rotates accumulator 1",
-        Op::Convert(_) => "converts accumulator 1",
+        Op::Compare(..) | Op::Arithmetic(..) | Op::WordLogic(..) | Op::Convert(_) => &s7_computation(op)?,
         Op::Real(_) => "function of the floating-point number in accumulator 1",
         Op::SwapAccumulators => "exchanges accumulators 1 and 2",
         Op::Push => "accumulator 2 takes accumulator 1",
@@ -351,6 +412,11 @@ mod tests {
         assert!(help.starts_with("`LDR`: the result is the rising edge") && help.contains("line 3072"), "{help}");
         assert!(instruction("SPB", Language::Awl(Mnemonics::German)).unwrap().contains("RLO is 1"));
         assert_eq!(instruction("SPB", Language::Awl(Mnemonics::English)), None);
+        let help = |word| instruction(word, Language::Awl(Mnemonics::German)).unwrap();
+        assert_eq!(help("itd"), "`ITD`: makes of accumulator 1, an integer of 16 bits, one of 32 bits");
+        assert!(help("-I").contains("subtracts accumulator 1 from accumulator 2, as integers of 16 bits"));
+        assert!(help("<=R").contains("accumulator 2 is less than or equal to accumulator 1"));
+        assert!(help("XOD").contains("exclusive OR of 32 bits"));
         assert!(instruction("copy_bit", Language::Pl7St).unwrap().contains("of 1 argument"));
         assert_eq!(instruction("Pump", Language::Pl7St), None);
     }

@@ -140,14 +140,14 @@ fn hover_tells_what_an_address_is() {
         assert!(text.contains(expected), "{expected} in {text}");
     }
     let text = hover(&mut client, "main.st", MAIN, "Start THEN", 0);
-    assert!(text.contains("`%I1.0`, symbol `Start`") && text.contains("1 read, 0 writes, 1 edge test"), "{text}");
+    assert!(text.contains("address `%I1.0`") && text.contains("1 read, 0 writes, 1 edge test"), "{text}");
     assert!(text.contains("may not write it"), "{text}");
     let text = hover(&mut client, "main.st", MAIN, "%MW10:X3", 2);
     assert!(text.contains("1 bit") && text.contains("shares memory with `Level`"), "{text}");
     assert!(hover(&mut client, "main.st", MAIN, "%L20", 2).contains("label, with 1 jump"));
     assert!(hover(&mut client, "main.st", MAIN, "SR3", 1).contains("`MAST - SR3`, called in 1 place"));
     assert!(hover(&mut client, "main.st", MAIN, "SET", 1).contains("line 3570"));
-    assert!(hover(&mut client, "variables.scy", VARIABLES, "Level", 1).contains("`%MW10`, symbol `Level`"));
+    assert!(hover(&mut client, "variables.scy", VARIABLES, "Level", 1).contains("address `%MW10`"));
     assert_eq!(hover(&mut client, "main.st", MAIN, "! IF", 1), "", "between two words");
     client.stop();
 }
@@ -271,6 +271,136 @@ fn symbols_and_labels_are_renamed_everywhere() {
     client.stop();
 }
 
+const SYMBOLS: &str = "\"Motor\",\"FB      1\",\"FB      1\",\"starts and stops\"
+\"Data\",\"DB     10\",\"DB     10\",\"\"
+\"Lamp\",\"A       4.0\",\"BOOL\",\"red\"
+";
+
+const BLOCKS: &str = "TYPE UDT 1
+STRUCT
+  on : BOOL ;
+  hours : INT ;
+END_STRUCT
+END_TYPE
+DATA_BLOCK DB 10
+STRUCT
+  Speed : INT ;
+  Left : UDT 1 ;
+END_STRUCT
+BEGIN
+END_DATA_BLOCK
+DATA_BLOCK DB 1
+  FB 1
+BEGIN
+END_DATA_BLOCK
+FUNCTION_BLOCK FB 1
+VAR_INPUT
+  Go : BOOL ;
+END_VAR
+VAR
+  state : UDT 1 ;
+END_VAR
+BEGIN
+NETWORK
+      U     #Go;
+      =     #state.on;
+      L     #state.hours;
+      T     \"Data\".Speed;
+END_FUNCTION_BLOCK
+ORGANIZATION_BLOCK OB 100
+BEGIN
+NETWORK
+      L     DB10.DBW 4;
+      T     DB10.DBW 0;
+END_ORGANIZATION_BLOCK
+ORGANIZATION_BLOCK OB 1
+BEGIN
+NETWORK
+      CALL  \"Motor\" , DB 1 (
+           Go := E 0.0);
+      U     A 4.0;
+      =     \"Lamp\";
+END_ORGANIZATION_BLOCK
+";
+
+#[test]
+fn symbols_of_blocks_and_fields_lead_to_what_they_name() {
+    let mut client = Client::start(able(), &[("a.awl", BLOCKS), ("a.sdf", SYMBOLS)]);
+    let mut find = |needle: &str, within: usize| {
+        let params = at(&client, "a.awl", BLOCKS, needle, within);
+        let answer = client.ask("textDocument/definition", params);
+        locations(&client, &answer)
+    };
+    assert_eq!(find("\"Motor\"", 2), ["a.awl:18:1-18:20"], "the block behind a symbol");
+    assert_eq!(find("\"Data\".Speed", 8), ["a.awl:9:3-9:8"]);
+    assert_eq!(find("DB10.DBW 0", 1), ["a.awl:9:3-9:8"], "a field by its address");
+    assert_eq!(find("DB10.DBW 4", 1), ["a.awl:4:3-4:8"], "a field of the type of a field");
+    assert_eq!(find("\"Lamp\"", 1), ["a.sdf:3:2-3:6"]);
+    let mut find = |needle: &str, within: usize| {
+        let mut params = at(&client, "a.awl", BLOCKS, needle, within);
+        params["context"] = json!({ "includeDeclaration": false });
+        let answer = client.ask("textDocument/references", params);
+        locations(&client, &answer)
+    };
+    assert_eq!(find("FUNCTION_BLOCK FB 1", 16), ["a.awl:41:13-41:20"], "the calls of the block of a heading");
+    assert_eq!(find("state : UDT", 1), ["a.awl:28:13-28:22", "a.awl:29:13-29:25"], "parts of a structure");
+    assert_eq!(find("Speed : INT", 1), ["a.awl:30:13-30:25", "a.awl:36:13-36:23"]);
+    let mut shown = |needle: &str, within: usize| hover(&mut client, "a.awl", BLOCKS, needle, within);
+    let text = shown("\"Motor\"", 2);
+    assert!(text.contains("`FB1`, called in 1 place, runs in OB1") && text.contains("input `go : BOOL`"), "{text}");
+    let text = shown("FUNCTION_BLOCK FB 1", 17);
+    assert!(text.contains("called in 1 place"), "{text}");
+    let text = shown("\"Data\".Speed", 8);
+    assert!(text.contains("field `speed : INT`") && text.contains("- OB100: 0 reads, 1 write"), "{text}");
+    let text = shown("#state.on", 2);
+    assert!(text.contains("component `on` of type `BOOL` of `state`, static of type `UDT1`"), "{text}");
+    let text = shown("state : UDT", 1);
+    assert!(text.contains("static of type `UDT1`") && !text.contains("not used"), "{text}");
+    let text = shown("A 4.0", 1);
+    assert!(text.contains("symbol `\"Lamp\"`: red"), "{text}");
+    let open =
+        BLOCKS.replace("      L     #state.hours;", "      L     #state.\n      L     \"Data\".\n      =     \"La");
+    client.open("a.awl", &open);
+    let mut offered = |needle: &str| {
+        let params = at(&client, "a.awl", &open, needle, needle.len());
+        client.ask("textDocument/completion", params)
+    };
+    assert_eq!(labels(&offered("L     #state.")), ["on", "hours"]);
+    assert_eq!(labels(&offered("L     \"Data\".")), ["speed", "left"]);
+    let answer = offered("=     \"La");
+    let item = answer["items"].as_array().unwrap().iter().find(|it| it["label"] == "\"Lamp\"").unwrap();
+    assert_eq!(range(&item["textEdit"]["range"]), "31:13-31:16", "the quote is part of the symbol");
+    client.stop();
+}
+
+#[test]
+fn members_tables_and_steps_are_found() {
+    let variables = VARIABLES.replace("END_VAR\n", "    Table AT %MW20 : WORD (*recipe*);\nEND_VAR\n");
+    let main = MAIN.replace("! SR3;", "! SR3;\n! %MW1 := Table[%MW2];");
+    let old = "GR7 : PL7-2 - SEQ
+PAGE 0
+INITIAL_STEP 0 AT (C 0,L 0) : END_STEP
+END_PAGE
+LD : PL7-2 - POST
+RUNG L1:
+OPEN_CONTACT(X0),H_LINK(8),COIL(B20);
+END_RUNG
+";
+    let mut client = Client::start(able(), &[("main.st", &main), ("variables.scy", &variables), ("old/a.ld", old)]);
+    let mut find = |path: &str, text: &str, needle: &str| {
+        let params = at(&client, path, text, needle, 1);
+        let answer = client.ask("textDocument/definition", params);
+        locations(&client, &answer)
+    };
+    assert_eq!(find("main.st", &main, "Table["), ["variables.scy:8:5-8:10"]);
+    assert_eq!(find("old/a.ld", old, "X0)"), ["old/a.ld:3:14-3:15"], "a step of PL7-2");
+    let answer = client.ask("textDocument/codeLens", json!({ "textDocument": client.document("old/a.ld") }));
+    assert_eq!(answer[0]["command"]["title"], "X0: 1 read, 0 writes", "as PL7-2 writes it");
+    let text = hover(&mut client, "main.st", &main, "Table[", 1);
+    assert!(text.contains("address `%MW20`") && text.contains("recipe"), "{text}");
+    client.stop();
+}
+
 fn outline(symbols: &Value, depth: usize, out: &mut Vec<String>) {
     for it in symbols.as_array().into_iter().flatten() {
         out.push(format!("{}{}", " ".repeat(depth), it["name"].as_str().unwrap()));
@@ -313,6 +443,12 @@ fn what_has_several_lines_folds() {
     let awl = folds("a.awl");
     assert!([(1, 14), (2, 5), (7, 13), (16, 23)].iter().all(|it| awl.contains(it)), "{awl:?}");
     assert_eq!(folds("main.st"), [(1, 9), (4, 6), (10, 11)]);
+    let commented = format!("// one\n// two\n{AWL}");
+    client.open("a.awl", &commented);
+    let answer = client.ask("textDocument/foldingRange", json!({ "textDocument": client.document("a.awl") }));
+    let lines = |it: &Value| (it["startLine"].as_u64().unwrap() + 1, it["endLine"].as_u64().unwrap() + 1);
+    let awl: Vec<(u64, u64)> = answer.as_array().unwrap().iter().map(lines).collect();
+    assert_eq!(awl[..2], [(1, 2), (3, 16)], "the heading stays in view");
     client.stop();
 }
 
@@ -381,8 +517,16 @@ fn words_are_completed() {
     assert_eq!(found, ["m001", "#Go", "#Count"]);
     let params = at(&client, "awl/a.awl", &open, "SPB ", 2);
     let found = labels(&client.ask("textDocument/completion", params));
-    assert!(["SPBN", "UN", "FB 1"].iter().all(|it| found.contains(&(*it).to_owned())), "{found:?}");
+    assert!(["SPBN", "UN"].iter().all(|it| found.contains(&(*it).to_owned())), "{found:?}");
     assert!(!found.contains(&"JC".to_owned()), "the other set of mnemonics");
+    assert!(!found.contains(&"FB 1".to_owned()), "an operand needs its instruction");
+    let params = at(&client, "awl/a.awl", &open, "FB 1 ,", 1);
+    let found = labels(&client.ask("textDocument/completion", params));
+    assert!(found.contains(&"FB 1".to_owned()) && !found.contains(&"SPBN".to_owned()), "{found:?}");
+    let params = at(&client, "awl/a.awl", &open, "M 11.3", 4);
+    let answer = client.ask("textDocument/completion", params);
+    let item = answer["items"].as_array().unwrap().iter().find(|it| it["label"] == "M 11.3").unwrap();
+    assert_eq!(range(&item["textEdit"]["range"]), "13:13-13:17", "the operand with the blank in it");
     client.stop();
 }
 

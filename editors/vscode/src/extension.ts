@@ -2,6 +2,7 @@ import { homedir } from 'node:os';
 import {
   type ExtensionContext,
   type LogOutputChannel,
+  type QuickPickItem,
   type Uri as UriType,
   Uri,
   commands,
@@ -9,10 +10,17 @@ import {
   window,
   workspace,
 } from 'vscode';
-import { LanguageClient, type LanguageClientOptions, RevealOutputChannelOn, TransportKind } from 'vscode-languageclient/node';
+import { LanguageClient, type LanguageClientOptions, RevealOutputChannelOn, State, TransportKind } from 'vscode-languageclient/node';
 import { RESTARTING, type Settings, advice, languagesOf, pageOf, program, selector } from './options';
 
-let client: LanguageClient | undefined;
+/** The user is told once that the server does not start, by `tell`; the library would say so too. */
+class Client extends LanguageClient {
+  override error(message: string, data?: unknown, showNotification?: boolean | 'force'): void {
+    super.error(message, data, this.state === State.Running ? showNotification : false);
+  }
+}
+
+let client: Client | undefined;
 /** Starts and stops follow one another. */
 let queue: Promise<void> = Promise.resolve();
 
@@ -73,7 +81,7 @@ async function start(context: ExtensionContext, log: LogOutputChannel): Promise<
     initializationFailedHandler: () => false,
   };
   const server = { command, transport: TransportKind.stdio, options: { env } };
-  const next = new LanguageClient('plclint', 'plclint', { ...server, args }, options);
+  const next = new Client('plclint', 'plclint', { ...server, args }, options);
   client = next;
   try {
     await next.start();
@@ -102,9 +110,11 @@ async function tell(message: string, log: LogOutputChannel): Promise<void> {
   }
 }
 
-/** The pages of the findings at the cursor are offered first; a code may be typed. */
+/** Of the findings at the cursor, else of those on its line; a code may be typed where there are none. */
 async function showRule(): Promise<void> {
-  const page = pageAtCursor() ?? (await askForPage());
+  const found = rulesAtCursor();
+  const page = found.length > 1 ? (await window.showQuickPick(found, { title: 'plclint: page of a rule' }))?.page
+    : (found[0]?.page ?? (await askForPage()));
   if (!page) {
     return;
   }
@@ -117,14 +127,27 @@ async function showRule(): Promise<void> {
   }
 }
 
-function pageAtCursor(): UriType | undefined {
+interface RulePick extends QuickPickItem {
+  readonly page: UriType;
+}
+
+/** Each rule once. */
+function rulesAtCursor(): RulePick[] {
   const editor = window.activeTextEditor;
   if (!editor) {
-    return undefined;
+    return [];
   }
-  const found = languages.getDiagnostics(editor.document.uri);
-  const here = found.find((it) => it.source === 'plclint' && it.range.contains(editor.selection.active));
-  return typeof here?.code === 'object' ? here.code.target : undefined;
+  const cursor = editor.selection.active;
+  const own = languages.getDiagnostics(editor.document.uri).filter((it) => it.source === 'plclint');
+  const here = own.filter((it) => it.range.contains(cursor));
+  const near = here.length > 0 ? here : own.filter((it) => it.range.intersection(editor.document.lineAt(cursor).range));
+  const found = new Map<string, RulePick>();
+  for (const { code, message } of near) {
+    if (typeof code === 'object' && !found.has(String(code.value))) {
+      found.set(String(code.value), { label: String(code.value), description: message.split('\n', 1)[0] ?? '', page: code.target });
+    }
+  }
+  return [...found.values()];
 }
 
 async function askForPage(): Promise<UriType | undefined> {

@@ -6,7 +6,7 @@ use lsp_types::{
     CodeAction, CodeActionKind, CodeActionParams, CodeActionRequest, CodeActionResponse, Position, Range, TextEdit,
 };
 use rowan::{TextRange, TextSize};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -41,10 +41,16 @@ impl Handle for Handler {
             let touched =
                 findings.iter().filter(|it| it.suppressed.is_none() && touches(it.finding.place.range, range));
             let mut disabled: FxHashSet<&str> = FxHashSet::default();
+            // Each asks the grammar: once for each line, of a unit.
+            let (lines, layout) = (db::lines(it.db, it.file), db::layout(it.db, it.file));
+            let mut above: FxHashMap<_, Option<Above>> = FxHashMap::default();
             for finding in touched {
                 let rule = finding.finding.rule;
                 actions.extend(fixes(&it, finding));
-                actions.extend(suppress(&it, finding));
+                let start = finding.finding.place.range.start();
+                let line = (lines.line_col(start).line, db::unit_at(layout, start));
+                let above = above.entry(line).or_insert_with(|| Above::new(&it, start));
+                actions.extend(above.iter().flat_map(|above| suppress(&it, finding, above)));
                 if disabled.insert(rule.code) {
                     actions.extend(disable(&it, rule));
                 }
@@ -119,48 +125,68 @@ fn fix_all(it: &InFile<'_>, findings: &[FileFinding]) -> Option<CodeAction> {
 }
 
 /// Comments that suppress the finding where it stands, and its rule in the whole file.
-fn suppress(it: &InFile<'_>, finding: &FileFinding) -> Vec<CodeAction> {
+fn suppress(it: &InFile<'_>, finding: &FileFinding, above: &Above) -> Vec<CodeAction> {
     let rule = finding.finding.rule;
     let action = |verb: &str, where_: &str| {
-        let place = comment(it, finding.finding.place.range, &format!("plclint: {verb}({})", rule.name))?;
         let mut edits = Edits::default();
-        edits.add(it.path(), place);
+        edits.add(it.path(), above.comment(it, &format!("plclint: {verb}({})", rule.name)));
         let title = format!("Suppress {} ({}) {where_} with a comment", rule.code, rule.name);
-        Some(quick_fix(it, finding, title, edits))
+        quick_fix(it, finding, title, edits)
     };
-    [action("allow", "here"), action("allow-file", "in this file")].into_iter().flatten().collect()
+    vec![action("allow", "here"), action("allow-file", "in this file")]
 }
 
-/// A comment on a line of its own above a place. `None` where none may stand, as the grammar says.
-fn comment(it: &InFile<'_>, range: TextRange, text: &str) -> Option<TextEdit> {
-    let source = it.file.text(it.db);
-    let lines = db::lines(it.db, it.file);
-    let line = lines.line_range(lines.line_col(range.start()).line)?;
-    let content = source.get(std::ops::Range::<usize>::from(line))?;
-    let cursor = InUnit::at(*it, range.start())?;
-    // On the first line of a unit, the line may begin in another one.
-    let at = line.start().max(cursor.offset);
-    let language = cursor.unit.language(it.db);
-    let comment = match language {
-        it if it.is_statement_list() => format!("// {text}"),
-        it if it.declares_symbols() || it == Language::Pl7Xref => return None,
-        _ => format!("(* {text} *)"),
-    };
-    let blanks = content.find(|it| it != ' ' && it != '\t').unwrap_or(0);
-    let line_break = if content.ends_with("\r\n") || source.contains("\r\n") { "\r\n" } else { "\n" };
-    let inserted = format!("{}{comment}{line_break}", content.get(..blanks)?);
-    let unit = cursor.unit.text(it.db);
-    let relative = at.checked_sub(cursor.offset)?;
-    let (before, behind) = unit.split_at_checked(relative.into())?;
-    let new = format!("{before}{inserted}{behind}");
-    let parse = syntax::parse(language, &new);
-    let start = relative + TextSize::of(content.get(..blanks)?);
-    let is_comment = parse
-        .syntax()
-        .descendant_tokens()
-        .any(|it| it.kind() == SyntaxKind::Comment && it.text_range().contains(start) && it.text().contains(text));
-    let is_no_worse = parse.errors().len() <= db::tree(it.db, cursor.unit).errors().len();
-    (is_comment && is_no_worse).then(|| TextEdit { range: it.range(TextRange::empty(at)), new_text: inserted })
+/// Where a comment may stand on a line of its own above a place.
+struct Above {
+    at: TextSize,
+    indent: String,
+    line_break: &'static str,
+    is_statement_list: bool,
+}
+
+impl Above {
+    /// `None` where no comment may stand, as the grammar says.
+    fn new(it: &InFile<'_>, place: TextSize) -> Option<Self> {
+        let source = it.file.text(it.db);
+        let lines = db::lines(it.db, it.file);
+        let line = lines.line_range(lines.line_col(place).line)?;
+        let content = source.get(std::ops::Range::<usize>::from(line))?;
+        let cursor = InUnit::at(*it, place)?;
+        let language = cursor.unit.language(it.db);
+        if language.declares_symbols() || language == Language::Pl7Xref {
+            return None;
+        }
+        // On the first line of a unit, the line may begin in another one.
+        let at = line.start().max(cursor.offset);
+        let blanks = content.find(|it| it != ' ' && it != '\t').unwrap_or(0);
+        let line_break = if content.ends_with("\r\n") || source.contains("\r\n") { "\r\n" } else { "\n" };
+        let indent = content.get(..blanks)?.to_owned();
+        let above = Self { at, indent, line_break, is_statement_list: language.is_statement_list() };
+        let text = "plclint: allow(rule)";
+        let unit = cursor.unit.text(it.db);
+        let relative = at.checked_sub(cursor.offset)?;
+        let (before, behind) = unit.split_at_checked(relative.into())?;
+        let parse = syntax::parse(language, &format!("{before}{}{behind}", above.line(text)));
+        let start = relative + TextSize::of(above.indent.as_str());
+        let is_comment = parse
+            .syntax()
+            .descendant_tokens()
+            .any(|it| it.kind() == SyntaxKind::Comment && it.text_range().contains(start) && it.text().contains(text));
+        let is_no_worse = parse.errors().len() <= db::tree(it.db, cursor.unit).errors().len();
+        (is_comment && is_no_worse).then_some(above)
+    }
+
+    fn line(&self, text: &str) -> String {
+        let Self { indent, line_break, .. } = self;
+        match self.is_statement_list {
+            true => format!("{indent}// {text}{line_break}"),
+            false => format!("{indent}(* {text} *){line_break}"),
+        }
+    }
+
+    fn comment(&self, it: &InFile<'_>, text: &str) -> TextEdit {
+        TextEdit { range: it.range(TextRange::empty(self.at)), new_text: self.line(text) }
+    }
 }
 
 /// Adds the rule to those that the configuration leaves out.

@@ -5,8 +5,7 @@ use rowan::{TextRange, TextSize};
 
 use super::{Answer, Handle};
 use crate::db;
-use crate::model::entity::{Entity, Part};
-use crate::model::object::{Object, pl7};
+use crate::model::object::Object;
 use crate::server::cursor::{self, InProgram, Named};
 use crate::server::snapshot::Snapshot;
 use crate::source::detect::Detected;
@@ -36,13 +35,14 @@ impl Handle for Handler {
                 let Some(facts) = index.units.get(at) else { continue };
                 let model = db::model(it.db, unit);
                 let place = |range: TextRange| range + TextSize::new(offset);
-                if is_called(unit.entity(it.db)) {
+                if cursor::is_called(unit.entity(it.db)) {
                     let calls = index.callers.get(at).map_or(0, Vec::len);
                     lens(place(model.heading()), format!("{} in the program", counted(calls, "call")));
                 }
                 let Some(chart) = facts.chart.as_ref().filter(|it| it.defines) else { continue };
                 for step in &chart.steps {
-                    let bit = step.name.as_ref().and_then(|it| pl7::parse(&it.bit(chart.graph)).ok());
+                    let bit = step.name.as_ref();
+                    let bit = bit.and_then(|it| cursor::step_bit(it, chart.graph, index.family));
                     let Some(object) = bit else { continue };
                     let range = place(model.place(step.anchor));
                     let title = uses(object, &index);
@@ -64,15 +64,4 @@ fn uses(object: Object, index: &crate::analysis::program::ProgramIndex<'_>) -> S
 
 fn counted(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-}
-
-/// Whether something else calls a unit: the system calls what it runs itself.
-fn is_called(entity: &Entity) -> bool {
-    use crate::model::entity::BlockKind as B;
-    matches!(
-        entity,
-        Entity::Dfb { .. }
-            | Entity::Pl7 { part: Part::Subroutine(_), .. }
-            | Entity::Block { kind: B::Fb | B::Fc | B::Sfb | B::Sfc, .. }
-    )
 }

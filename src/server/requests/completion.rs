@@ -11,11 +11,11 @@ use super::{Answer, Handle};
 use crate::analysis::program::ProgramIndex;
 use crate::db;
 use crate::model::dfb::Role;
-use crate::model::entity::{BlockName, Entity};
-use crate::model::object::Class;
+use crate::model::entity::{BlockKind, BlockName, Entity, Family};
+use crate::model::object::{Class, step7};
 use crate::model::symbols::key;
 use crate::model::unit::{Section, StatementKind};
-use crate::server::cursor::{InProgram, InUnit};
+use crate::server::cursor::{self, InProgram, InUnit};
 use crate::server::describe;
 use crate::server::snapshot::Snapshot;
 use crate::syntax::awl::instruction as awl;
@@ -58,27 +58,40 @@ impl Handle for Handler {
         let position = params.text_document_position_params;
         let Some(it) = snapshot.file(&position.text_document.uri) else { return Ok(None) };
         let Some(cursor) = InUnit::at(it, it.offset(position.position)) else { return Ok(None) };
+        let language = cursor.unit.language(it.db);
+        if matches!(language, Language::SymbolTable | Language::Step5Symbols) {
+            return Ok(None);
+        }
         let is_comment =
             |kind| matches!(kind, SyntaxKind::Comment | SyntaxKind::UnclosedComment | SyntaxKind::CharString);
         if cursor.token().is_some_and(|it| is_comment(it.kind()) && it.text_range().start() < cursor.at) {
             return Ok(None);
         }
-        let typed = Typed::at(&cursor);
-        let mut found = Found { items: Vec::new(), seen: FxHashSet::default() };
-        if let Some((program, _)) = cursor.program() {
+        let before = cursor.text(TextRange::up_to(cursor.at));
+        let typed = if language.is_statement_list() {
+            Typed::in_list(before, language)
+        } else {
+            Typed::in_words(before, language)
+        };
+        let mut found = Found { items: Vec::new(), seen: FxHashSet::default(), of_owner: false };
+        if let Some((program, unit)) = cursor.program() {
             let program = InProgram::new(it, program);
             let index = program.index();
-            let is_member = typed.owner.is_some_and(|owner| found.members(owner, &index));
+            let is_member = typed.owner.is_some_and(|owner| found.members(owner, &cursor, &program, &index, unit));
             if !is_member {
                 found.parameters(&cursor, &index);
-                found.of_unit(&cursor, &typed);
-                found.of_program(&cursor, &typed, &index);
+                if typed.is_operand {
+                    found.of_unit(&cursor, &typed);
+                    found.of_program(&cursor, &typed, &program, &index);
+                }
             }
         }
         if typed.owner.is_none() && typed.is_word {
-            found.words(cursor.unit.language(it.db));
+            found.words(language);
         }
-        let range = it.range(cursor.in_file(typed.range));
+        let start = if found.of_owner { typed.behind_owner } else { typed.start };
+        let start = TextSize::try_from(start).unwrap_or(cursor.at).min(cursor.at);
+        let range = it.range(cursor.in_file(TextRange::new(start, cursor.at)));
         let items = found.items.into_iter().map(|item| {
             let new_text = item.insert_text.clone().unwrap_or_else(|| item.label.clone());
             CompletionItem {
@@ -92,45 +105,161 @@ impl Handle for Handler {
     }
 }
 
-/// What is typed already.
+/// What is typed already. Offsets are in the text before the cursor.
+#[derive(Debug, Default, PartialEq, Eq)]
 struct Typed<'s> {
-    /// What an item takes the place of.
-    range: TextRange,
+    /// Where what an item takes the place of begins.
+    start: usize,
     /// The name before a dot.
     owner: Option<&'s str>,
-    /// Whether a word may stand here, not only an operand.
+    /// Where its member begins.
+    behind_owner: usize,
+    /// Whether an instruction or a word of the language may stand here.
     is_word: bool,
+    is_operand: bool,
     is_local: bool,
+    /// What stands between the letters and the number of an operand; one blank where it is not typed yet.
+    gap: &'s str,
 }
 
 impl<'s> Typed<'s> {
-    fn at(cursor: &InUnit<'s>) -> Self {
-        let before = cursor.text(TextRange::up_to(cursor.at));
+    /// In a language of words and operands without blanks in them.
+    fn in_words(before: &'s str, language: Language) -> Self {
         let is_part = |it: char| it.is_alphanumeric() || matches!(it, '_' | '%' | '#' | '"' | '.' | ':' | '\\');
-        let mut text = before.trim_end_matches(is_part);
-        text = before.get(text.len()..).unwrap_or_default();
-        // An assignment, or the end of a label, begins another word.
-        if let Some((_, rest)) =
-            text.rsplit_once(':').filter(|it| !it.1.starts_with(|it: char| it == 'X' || it.is_ascii_digit()))
-        {
-            text = rest;
+        let mut start = before.trim_end_matches(is_part).len();
+        if language.is_pl7_2() {
+            start = behind_commas(before, start);
         }
-        let mut owner = None;
+        // An assignment, or the end of a label, begins another word.
+        if let Some((head, rest)) = before.get(start..).and_then(|it| it.rsplit_once(':'))
+            && !rest.starts_with(|it: char| it == 'X' || it.is_ascii_digit())
+        {
+            start += head.len() + 1;
+        }
+        let text = before.get(start..).unwrap_or_default();
+        let mut typed = Self { start, is_operand: true, gap: " ", ..Self::default() };
         if !text.starts_with(['%', '#', '"'])
-            && let Some((name, rest)) = text.rsplit_once('.')
+            && let Some((name, _)) = text.rsplit_once('.')
             && name.starts_with(char::is_alphabetic)
         {
-            (owner, text) = (Some(name), rest);
+            (typed.owner, typed.behind_owner) = (Some(name), start + name.len() + 1);
         }
-        let start = cursor.at.checked_sub(TextSize::of(text)).unwrap_or(cursor.at);
-        let is_word = !text.starts_with(['%', '#', '"']);
-        Self { range: TextRange::new(start, cursor.at), owner, is_word, is_local: text.starts_with('#') }
+        typed.is_word = !text.starts_with(['%', '#', '"']);
+        typed
+    }
+
+    /// In a statement list: an instruction, and behind it an operand, which may have blanks in it.
+    fn in_list(before: &'s str, language: Language) -> Self {
+        let line = before.rfind('\n').map_or(0, |it| it + 1);
+        // What begins at `start` is an instruction until a blank follows it; nothing of it is there while it `is_blank`.
+        let (mut start, mut behind_instruction, mut is_blank) = (line, false, true);
+        let (mut is_quoted, mut is_declaration) = (false, false);
+        // STEP 5 has a colon before each instruction, which may follow a label and blanks.
+        let mut wants_colon = matches!(language, Language::Step5(_));
+        for (at, char) in before.get(line..).unwrap_or_default().char_indices().map(|(at, char)| (line + at, char)) {
+            let behind = at + char.len_utf8();
+            match char {
+                '"' => is_quoted = !is_quoted,
+                '«' => is_quoted = true,
+                '»' => is_quoted = false,
+                _ => {}
+            }
+            let begins = match char {
+                _ if is_quoted => false,
+                ';' => {
+                    (behind_instruction, is_declaration) = (false, false);
+                    true
+                }
+                ':' if wants_colon || !behind_instruction => {
+                    (wants_colon, behind_instruction) = (false, false);
+                    true
+                }
+                ':' => {
+                    is_declaration = true;
+                    false
+                }
+                '=' if before.get(..at).is_some_and(|it| it.ends_with(':')) => {
+                    (behind_instruction, is_declaration) = (true, false);
+                    true
+                }
+                '(' | ',' | '[' => behind_instruction,
+                it if it.is_whitespace() => {
+                    let begins = is_blank || !behind_instruction;
+                    behind_instruction |= !is_blank;
+                    if !begins {
+                        continue;
+                    }
+                    true
+                }
+                _ => false,
+            };
+            is_blank = begins;
+            if begins {
+                start = behind;
+            }
+        }
+        let text = before.get(start..).unwrap_or_default();
+        let is_local = text.starts_with('#');
+        let mut typed = Self {
+            start,
+            is_local,
+            is_word: !behind_instruction,
+            is_operand: behind_instruction && !is_declaration,
+            gap: " ",
+            ..Self::default()
+        };
+        let letters = text.trim_start_matches(|it: char| it.is_ascii_alphabetic());
+        let number = letters.trim_start();
+        if letters.len() < text.len() && number.starts_with(|it: char| it.is_ascii_digit()) && !text.contains('"') {
+            typed.gap = letters.get(..letters.len() - number.len()).unwrap_or_default();
+        }
+        let dot = text.rfind('.').filter(|&it| text.get(..it).is_some_and(has_members));
+        if let Some(dot) = dot {
+            (typed.owner, typed.behind_owner) = (text.get(..dot), start + dot + 1);
+        }
+        typed
+    }
+}
+
+/// Whether a name before a dot may be that of a whole with parts: `#motor`, `"Data"`, `DB 10`. `M 10` has bits.
+fn has_members(name: &str) -> bool {
+    name.starts_with(['#', '«'])
+        || (name.starts_with('"') && name.matches('"').count().is_multiple_of(2))
+        || name.get(..2).is_some_and(|it| it.eq_ignore_ascii_case("DB"))
+            && name.get(2..).is_some_and(|it| it.starts_with(|it: char| it == ' ' || it.is_ascii_digit()))
+}
+
+/// Where an operand of PL7-2 begins, of which the part behind its last comma begins at `start`: `I0,05`, `T0,P`.
+fn behind_commas(before: &str, mut start: usize) -> usize {
+    while let Some(head) = before.get(..start).and_then(|it| it.strip_suffix(',')) {
+        let object = head.get(head.trim_end_matches(|it: char| it.is_ascii_alphanumeric()).len()..).unwrap_or_default();
+        let number = object.trim_start_matches(|it: char| it.is_ascii_alphabetic());
+        let is_object =
+            !number.is_empty() && number.len() < object.len() && number.bytes().all(|it| it.is_ascii_digit());
+        if !is_object {
+            break;
+        }
+        start = head.len() - object.len();
+    }
+    start
+}
+
+/// An address of Siemens as listings have it, with something between its letters and its number: `M 1.3`, `DB10.DBW 2`.
+fn spaced(address: &str, gap: &str) -> String {
+    let number = address.trim_end_matches(|it: char| it.is_ascii_digit() || it == '.').len();
+    match address.split_at_checked(number) {
+        Some((letters, number)) if !number.is_empty() && letters.ends_with(|it: char| it.is_ascii_alphabetic()) => {
+            format!("{letters}{gap}{number}")
+        }
+        _ => address.to_owned(),
     }
 }
 
 struct Found {
     items: Vec<CompletionItem>,
     seen: FxHashSet<String>,
+    /// They stand behind the dot.
+    of_owner: bool,
 }
 
 impl Found {
@@ -151,18 +280,61 @@ impl Found {
         }
     }
 
-    /// What a block has behind a dot. `false` when the name is no instance.
-    fn members(&mut self, owner: &str, index: &ProgramIndex<'_>) -> bool {
-        let symbols = index.units.iter().flat_map(|it| &it.symbols);
-        let Some(instance) = symbols.filter(|it| it.object.is_none()).find(|it| key(&it.name) == key(owner)) else {
-            return false;
-        };
-        let ty = key(&instance.ty);
-        let dfbs = index.units.iter().filter(|it| matches!(&it.entity, Entity::Dfb { name } if key(name) == ty));
-        for item in dfbs.flat_map(|it| &it.interface).flat_map(|it| &it.items).filter(|it| it.role != Role::Private) {
-            self.add(&item.name, CompletionItemKind::Field, Some(item.role.describe().to_owned()));
+    /// What a name has behind a dot. `false` when it has nothing that is known.
+    fn members(
+        &mut self,
+        owner: &str,
+        cursor: &InUnit<'_>,
+        program: &InProgram<'_>,
+        index: &ProgramIndex<'_>,
+        unit: u32,
+    ) -> bool {
+        if index.family == Family::Step7 {
+            self.fields(owner, cursor, program, index, unit);
+        } else {
+            let instances = index.units.iter().flat_map(|it| &it.symbols).filter(|it| it.object.is_none());
+            let instance = instances.into_iter().find(|it| key(&it.name) == key(owner));
+            let dfb = instance.and_then(|it| index.units.get(cursor::dfb(&it.ty, index)? as usize));
+            let items = dfb.into_iter().flat_map(|it| &it.interface).flat_map(|it| &it.items);
+            for item in items.filter(|it| it.role != Role::Private) {
+                let detail = format!("{} : {}", item.role.describe(), item.ty.describe());
+                self.add(&item.name, CompletionItemKind::Field, Some(detail));
+            }
         }
-        true
+        self.of_owner = !self.items.is_empty();
+        self.of_owner
+    }
+
+    /// The fields of a data block, or of a variable that is a structure.
+    fn fields(
+        &mut self,
+        owner: &str,
+        cursor: &InUnit<'_>,
+        program: &InProgram<'_>,
+        index: &ProgramIndex<'_>,
+        unit: u32,
+    ) {
+        let Some(facts) = index.units.get(unit as usize) else { return };
+        let table = db::symbol_table(cursor.it.db, program.program);
+        let (block, path) = if let Some(path) = owner.strip_prefix('#') {
+            let Some(name) = facts.entity.name() else { return };
+            (name.clone(), path.to_owned())
+        } else {
+            // A field of the block, whatever it is called, leads to the block.
+            let compact: String = if owner.starts_with(['"', '«']) {
+                owner.to_owned()
+            } else {
+                owner.chars().filter(|it| !it.is_whitespace()).collect()
+            };
+            let object = step7::parse_either(&format!("{compact}.field"));
+            let Some((block, path)) = object.ok().and_then(|it| step7::field(&it)) else { return };
+            let path = path.strip_suffix("field").unwrap_or_default().trim_end_matches('.').to_owned();
+            (table.block(&block).unwrap_or(block), path)
+        };
+        let Some(layout) = index.layouts().of(&block).and_then(|it| it.inside(&path)) else { return };
+        for field in &layout.fields {
+            self.add(&field.name, CompletionItemKind::Field, Some(field.shape.to_string()));
+        }
     }
 
     /// Parameters of the call that the place stands in.
@@ -219,30 +391,45 @@ impl Found {
     }
 
     /// Objects, symbols and blocks of the program.
-    fn of_program(&mut self, cursor: &InUnit<'_>, typed: &Typed<'_>, index: &ProgramIndex<'_>) {
-        let table = cursor.program().map(|it| db::symbol_table(cursor.it.db, it.0));
+    fn of_program(
+        &mut self,
+        cursor: &InUnit<'_>,
+        typed: &Typed<'_>,
+        program: &InProgram<'_>,
+        index: &ProgramIndex<'_>,
+    ) {
         if typed.is_local {
             return;
         }
+        let table = db::symbol_table(cursor.it.db, program.program);
+        let in_code = |address: &str| match index.family.has_blocks() {
+            true => spaced(address, typed.gap),
+            false => address.to_owned(),
+        };
         let sees_symbols = !matches!(cursor.unit.entity(cursor.it.db), Entity::Dfb { .. });
         for it in index.units.iter().flat_map(|it| &it.symbols).filter(|_| sees_symbols) {
-            let detail = it.object.as_ref().map_or(it.ty.to_string(), |it| it.text.to_string());
-            self.add(&it.name, CompletionItemKind::Variable, Some(detail));
+            let detail = it.object.as_ref().map_or(it.ty.to_string(), |it| in_code(&it.text));
+            let name = match index.family {
+                Family::Step7 => format!("\"{}\"", it.name),
+                Family::Step5 => format!("-{}", it.name),
+                Family::Pl7 | Family::Pl72 => it.name.to_string(),
+            };
+            self.add(&name, CompletionItemKind::Variable, Some(detail));
         }
         for it in &index.objects {
             let is_address =
                 !matches!(it.object.class, Class::Symbol | Class::CodeBlock | Class::Indirect) && it.object.is_fixed();
             if is_address {
                 // An object goes by the first name that the program uses for it, which may be its symbol.
-                let address = table.and_then(|table| table.address(&it.object.text));
-                let label = address.as_ref().unwrap_or(&it.object.text);
-                self.add(label, CompletionItemKind::Variable, Some(describe::kind(it.object)));
+                let address = table.address(&it.object.text);
+                let label = in_code(address.as_ref().unwrap_or(&it.object.text));
+                self.add(&label, CompletionItemKind::Variable, Some(describe::kind(it.object)));
             }
         }
         for it in &index.units {
             match &it.entity {
-                Entity::Block { name: BlockName::Number(kind, number), .. } if typed.is_word => {
-                    self.add(&format!("{} {number}", kind.as_str()), CompletionItemKind::Function, None);
+                Entity::Block { name: name @ BlockName::Number(kind, _), .. } if *kind != BlockKind::Ob => {
+                    self.add(&in_code(&name.to_string()), CompletionItemKind::Function, None);
                 }
                 entity if typed.is_word => {
                     if let Some(number) = entity.subroutine() {
@@ -284,5 +471,71 @@ impl Found {
                 self.add(it.name, CompletionItemKind::Function, describe::instruction(it.name, Language::Pl7St));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::Mnemonics;
+
+    /// What an item takes the place of, the name before the dot, and whether an instruction or an operand is wanted.
+    fn shown<'s>(typed: &Typed<'s>, before: &'s str) -> (&'s str, &'s str, &'static str) {
+        let what = match (typed.is_word, typed.is_operand) {
+            (true, false) => "instruction",
+            (false, true) => "operand",
+            (true, true) => "either",
+            (false, false) => "nothing",
+        };
+        (&before[typed.start..], typed.owner.unwrap_or_default(), what)
+    }
+
+    #[test]
+    fn an_operand_of_a_statement_list_has_blanks_in_it() {
+        let german = Language::Awl(Mnemonics::German);
+        let check = |before, text, owner, what| {
+            assert_eq!(shown(&Typed::in_list(before, german), before), (text, owner, what), "{before:?}");
+        };
+        check("      U", "U", "", "instruction");
+        check("      >=", ">=", "", "instruction");
+        check("m001: SP", "SP", "", "instruction");
+        check("      U     M 20.", "M 20.", "", "operand");
+        check("      U M 0.0; =   A", "A", "", "operand");
+        check("      =     \"Tapis 1", "\"Tapis 1", "", "operand");
+        check("      L     \"Data\".ca", "\"Data\".ca", "\"Data\"", "operand");
+        check("      L     DB 20.DBW", "DB 20.DBW", "DB 20", "operand");
+        check("      L     #etat.", "#etat.", "#etat", "operand");
+        check("      CALL  FB 1, DB", "DB", "", "operand");
+        check("           Go := E 0.0, Count := M", "M", "", "operand");
+        check("           Go", "Go", "", "instruction");
+        check("  Go : BO", ": BO", "", "nothing");
+        let step5 = Language::Step5(Mnemonics::German);
+        let check = |before, text, what| {
+            assert_eq!(shown(&Typed::in_list(before, step5), before), (text, "", what), "{before:?}");
+        };
+        check("     :U", "U", "instruction");
+        check("M001 :U   E 0", "E 0", "operand");
+        check("     :=   -KLAXO", "-KLAXO", "operand");
+        assert_eq!(Typed::in_list("      U     M     2", german).gap, "     ");
+        assert_eq!(Typed::in_list("      U     M2", german).gap, "");
+        assert_eq!(Typed::in_list("      U     M", german).gap, " ");
+    }
+
+    #[test]
+    fn a_comma_is_part_of_what_pl7_2_names() {
+        let check = |before, text| assert_eq!(shown(&Typed::in_words(before, Language::Pl72Ld), before).0, text);
+        check("OPEN_CONTACT(I0,0", "I0,0");
+        check("OPEN_CONTACT(I0,", "I0,");
+        check("OPEN_CONTACT(SY01),H_L", "H_L");
+        check("BLOCK,EMPTY", "EMPTY");
+        check("COMPARE [X1,V > T0,", "T0,");
+    }
+
+    #[test]
+    fn addresses_are_written_as_in_listings() {
+        assert_eq!(spaced("M20.0", " "), "M 20.0");
+        assert_eq!(spaced("DB20.DBW14", "   "), "DB20.DBW   14");
+        assert_eq!(spaced("\"Data\".speed", " "), "\"Data\".speed");
+        assert_eq!(spaced("#x1.y", " "), "#x1.y");
     }
 }

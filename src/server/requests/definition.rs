@@ -6,12 +6,9 @@ use super::{Answer, Handle};
 use crate::analysis::Site;
 use crate::analysis::program::ProgramIndex;
 use crate::db::FilePlace;
-use crate::model::entity::Entity;
-use crate::model::object::{Area, Class};
-use crate::model::symbols::key;
+use crate::model::object::{Area, Class, Object};
 use crate::model::unit::Callee;
-use crate::server::cursor::{self, InProgram, InUnit, Named, Target, What};
-use crate::server::requests::references;
+use crate::server::cursor::{self, Called, InProgram, InUnit, Named, Target, What};
 use crate::server::snapshot::Snapshot;
 
 pub(super) struct Handler;
@@ -50,87 +47,71 @@ pub(super) fn places(
     index: &ProgramIndex<'_>,
     unit: u32,
 ) -> Vec<FilePlace> {
-    let here = |range| FilePlace { file: cursor.it.file, range: cursor.in_file(range) };
-    if let Some(callee) = references::callee(cursor, target) {
-        return of_callee(&callee, cursor, program, index, unit);
+    let here = |anchor| FilePlace { file: cursor.it.file, range: cursor.in_file(cursor.model.place(anchor)) };
+    let heading = |unit: u32| program.places().of(Site { unit, anchor: 0 });
+    if let Some(called) = Called::new(cursor, target, unit, index) {
+        let mut found = match &called.callee {
+            Some(Callee::LocalInstance(name)) => {
+                let name = name.trim_start_matches('#').to_lowercase();
+                cursor.model.fields().iter().filter(|it| it.name == *name).map(|it| here(it.anchor)).collect()
+            }
+            Some(Callee::Instance(name)) => {
+                cursor::symbol_places(program, index, &Object { text: name.clone(), ..Object::symbol(name) })
+            }
+            _ => Vec::new(),
+        };
+        found.extend(called.unit.and_then(heading));
+        return found;
     }
     let Some(named) = Named::new(cursor, target, unit, index) else { return Vec::new() };
     let object = &named.object;
     match object.class {
         Class::LocalName | Class::Symbol if named.only_in.is_some() => {
             if let Some(declared) = cursor::declaration(cursor.model, object) {
-                return vec![here(cursor.model.place(declared.anchor))];
+                return vec![here(declared.anchor)];
             }
             let items = cursor.model.interface.iter().flat_map(|it| &it.items);
-            let name = key(object.text.split(['.', '[', ':']).next().unwrap_or_default());
-            return items.filter(|it| key(&it.name) == name).map(|it| here(cursor.model.place(it.anchor))).collect();
+            return items.filter(|it| cursor::is_named(object, &it.name)).map(|it| here(it.anchor)).collect();
         }
-        Class::Step | Class::StepTime | Class::MacroStep => return steps(object.text.as_str(), program, index),
+        Class::Step | Class::StepTime | Class::MacroStep => return steps(object, program, index),
+        Class::Symbol => {
+            if let Some((site, _)) = cursor::member(object, index) {
+                return program.places().of(site).into_iter().collect();
+            }
+        }
         Class::CodeBlock | Class::Data => {
-            let (Area::CodeBlock(name) | Area::Data(name)) = &object.footprint.area else { return Vec::new() };
-            let is_it = |it: &Entity| it.name() == Some(name);
-            return headings(program, index, is_it);
+            if let Some((site, _)) = cursor::field(object, index) {
+                return program.places().of(site).into_iter().collect();
+            }
+            if let Area::CodeBlock(name) | Area::Data(name) = &object.footprint.area {
+                let units = (0..).zip(&index.units).filter(|it| it.1.entity.name() == Some(name));
+                return units.filter_map(|it| heading(it.0)).collect();
+            }
+            return Vec::new();
         }
         _ => {}
     }
     cursor::symbol_places(program, index, object)
 }
 
-fn headings(program: &InProgram<'_>, index: &ProgramIndex<'_>, is_it: impl Fn(&Entity) -> bool) -> Vec<FilePlace> {
-    let mut places = program.places();
-    let units = (0..).zip(&index.units).filter(|it| is_it(&it.1.entity));
-    units.filter_map(|(unit, _)| places.of(Site { unit, anchor: 0 })).collect()
-}
-
-fn of_callee(
-    callee: &Callee,
-    cursor: &InUnit<'_>,
-    program: &InProgram<'_>,
-    index: &ProgramIndex<'_>,
-    unit: u32,
-) -> Vec<FilePlace> {
-    match callee {
-        Callee::Subroutine(number) => {
-            // A task calls its own subroutines.
-            let task = index.units.get(unit as usize).and_then(|it| it.entity.task());
-            headings(program, index, |it| it.subroutine() == Some(*number) && it.task() == task)
-        }
-        Callee::Block(name) => headings(program, index, |it| it.name() == Some(name)),
-        Callee::LocalInstance(name) => {
-            let name = name.trim_start_matches('#').to_lowercase();
-            let declared = cursor.model.fields().iter().filter(|it| it.name == *name);
-            declared
-                .map(|it| FilePlace { file: cursor.it.file, range: cursor.in_file(cursor.model.place(it.anchor)) })
-                .collect()
-        }
-        Callee::Instance(name) => {
-            let mut places = program.places();
-            let mut found = Vec::new();
-            for (unit, facts) in (0..).zip(&index.units) {
-                for symbol in facts.symbols.iter().filter(|it| it.object.is_none() && key(&it.name) == *name) {
-                    found.extend(places.of(Site { unit, anchor: symbol.anchor }));
-                    let ty = key(&symbol.ty);
-                    found.extend(headings(program, index, |it| matches!(it, Entity::Dfb { name } if key(name) == ty)));
-                }
-            }
-            found
-        }
-        Callee::Function(_) | Callee::Unknown => Vec::new(),
-    }
-}
-
-/// Steps whose bit, or whose time, an address is.
-fn steps(address: &str, program: &InProgram<'_>, index: &ProgramIndex<'_>) -> Vec<FilePlace> {
-    let bit = address.strip_suffix(".T").unwrap_or(address);
+/// Steps whose bit, or whose time, an object is.
+fn steps(of: &Object, program: &InProgram<'_>, index: &ProgramIndex<'_>) -> Vec<FilePlace> {
     let mut places = program.places();
     let mut found = Vec::new();
+    // Bits and times of steps are numbered alike.
+    let number = if of.class == Class::StepTime { of.footprint.start / STEP_TIME_BITS } else { of.footprint.start };
+    let is_macro = of.class == Class::MacroStep;
     for (unit, facts) in (0..).zip(&index.units) {
         let Some(chart) = facts.chart.as_ref().filter(|it| it.defines) else { continue };
         for step in &chart.steps {
-            if step.name.as_ref().is_some_and(|it| it.bit(chart.graph).eq_ignore_ascii_case(bit)) {
+            let bit = step.name.as_ref().and_then(|it| cursor::step_bit(it, chart.graph, index.family));
+            if bit.is_some_and(|it| it.footprint.start == number && (it.class == Class::MacroStep) == is_macro) {
                 found.extend(places.of(Site { unit, anchor: step.anchor }));
             }
         }
     }
     found
 }
+
+/// See [`Area::StepTimes`].
+const STEP_TIME_BITS: u32 = 16;

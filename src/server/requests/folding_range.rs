@@ -25,19 +25,31 @@ impl Handle for Handler {
         for &(unit, offset) in db::layout(it.db, it.file) {
             let offset = TextSize::new(offset);
             if *unit.entity(it.db) != Entity::Container {
-                let range = TextRange::at(offset, TextSize::of(&**unit.text(it.db)));
-                folds.extend(fold(&it, range, FoldingRangeKind::Region));
+                // Comments before the heading stay in view.
+                let end = offset + TextSize::of(&**unit.text(it.db));
+                let heading = db::model(it.db, unit).heading().start() + offset;
+                folds.extend(fold(&it, TextRange::new(heading.min(end), end), FoldingRangeKind::Region));
             }
+            let mut comments: Option<TextRange> = None;
             for event in db::tree(it.db, unit).syntax().walk() {
-                let (range, kind) = match event {
-                    WalkEvent::Enter(node) if folds_away(node.kind()) => (node.text_range(), FoldingRangeKind::Region),
-                    WalkEvent::Token(token) if token.kind() == SyntaxKind::Comment => {
-                        (token.text_range(), FoldingRangeKind::Comment)
+                match event {
+                    WalkEvent::Enter(node) if folds_away(node.kind()) => {
+                        folds.extend(fold(&it, node.text_range() + offset, FoldingRangeKind::Region));
                     }
-                    _ => continue,
-                };
-                folds.extend(fold(&it, range + offset, kind));
+                    WalkEvent::Token(token) if token.kind() == SyntaxKind::Comment => {
+                        let range = token.text_range() + offset;
+                        comments = match comments {
+                            Some(above) if follows(&it, above, range) => Some(above.cover(range)),
+                            above => {
+                                folds.extend(above.and_then(|above| fold(&it, above, FoldingRangeKind::Comment)));
+                                Some(range)
+                            }
+                        };
+                    }
+                    _ => {}
+                }
             }
+            folds.extend(comments.and_then(|above| fold(&it, above, FoldingRangeKind::Comment)));
         }
         folds.sort_by_key(|it| (it.start_line, std::cmp::Reverse(it.end_line)));
         // Of several that begin on one line and end on one, the client shows one.
@@ -65,6 +77,19 @@ fn folds_away(kind: SyntaxKind) -> bool {
             | K::Transition
             | K::ExchangeBlock
     )
+}
+
+/// Whether only blanks and one line break stand between two comments, and only blanks before the first on its line.
+fn follows(it: &InFile<'_>, above: TextRange, below: TextRange) -> bool {
+    let text = it.file.text(it.db);
+    let between = text.get(above.end().into()..below.start().into()).unwrap_or("?");
+    let before = text.get(..above.start().into()).unwrap_or_default();
+    let line = before.get(before.rfind('\n').map_or(0, |it| it + 1)..).unwrap_or_default();
+    let breaks = between.matches('\n').count()
+        + usize::from(
+            above.end() > above.start() && text.get(..above.end().into()).is_some_and(|it| it.ends_with('\n')),
+        );
+    between.trim().is_empty() && breaks == 1 && line.trim().is_empty()
 }
 
 /// From the line where something begins to the last line that holds some of it.

@@ -10,12 +10,12 @@ use rustc_hash::FxHashSet;
 use super::{Answer, Handle};
 use crate::analysis::program::ProgramIndex;
 use crate::db;
-use crate::model::dfb::Role;
+use crate::model::dfb::{Item, Role};
+use crate::model::entity::BlockKind;
 use crate::model::object::{Class, Object};
-use crate::model::unit::{Mode, Section};
-use crate::server::cursor::{self, InProgram, InUnit, Named, Target, What};
+use crate::model::unit::{Callee, Mode, Section};
+use crate::server::cursor::{self, Called, InProgram, InUnit, Named, Target, What};
 use crate::server::describe;
-use crate::server::requests::references;
 use crate::server::snapshot::{InFile, Snapshot};
 use crate::syntax::Language;
 
@@ -95,8 +95,8 @@ fn of_target(cursor: &InUnit<'_>, target: &Target) -> Option<String> {
     let (program, unit) = cursor.program()?;
     let program = InProgram::new(cursor.it, program);
     let index = program.index();
-    if let Some(callee) = references::callee(cursor, target) {
-        return of_callee(cursor, target, &callee, &index);
+    if let Some(called) = Called::new(cursor, target, unit, &index) {
+        return of_called(cursor, target, &called, &index);
     }
     let named = Named::new(cursor, target, unit, &index)?;
     Some(of_object(cursor, target, &named, &program, &index))
@@ -106,34 +106,44 @@ fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-fn of_callee(
-    cursor: &InUnit<'_>,
-    target: &Target,
-    callee: &crate::model::unit::Callee,
-    index: &ProgramIndex<'_>,
-) -> Option<String> {
+fn of_called(cursor: &InUnit<'_>, target: &Target, called: &Called, index: &ProgramIndex<'_>) -> Option<String> {
     let text = cursor.text(target.range);
-    if let crate::model::unit::Callee::Function(name) = callee {
+    if let Some(Callee::Function(name)) = &called.callee {
         return describe::instruction(name, Language::Pl7St);
     }
-    let calls: Vec<_> = index.calls.iter().filter(|it| it.it.callee == *callee).collect();
-    let unit = calls.iter().find_map(|it| it.target).and_then(|it| index.units.get(it as usize));
+    let calls = count(called.calls(index).count(), "place");
+    let Some(unit) = called.unit.and_then(|it| index.units.get(it as usize)) else {
+        return Some(format!("**{text}**: called in {calls}; the program does not hold it"));
+    };
     let mut out = format!("**{text}**: ");
-    match unit {
-        Some(unit) => {
-            let _ = write!(out, "`{}`, called in {}", unit.entity, count(calls.len(), "place"));
-            let fields = unit.declared.iter().flat_map(|it| it.fields());
-            for declared in fields.filter(|it| section(it.section).is_some()) {
-                let word = section(declared.section).unwrap_or_default();
-                let _ = write!(out, "\n- {word} `{} : {}`", declared.name, declared.ty);
-            }
-            for item in unit.interface.iter().flat_map(|it| &it.items).filter(|it| is_parameter(it.role)) {
-                let _ = write!(out, "\n- {} `{}`", item.role.describe(), item.name);
-            }
+    let entity = unit.entity.to_string();
+    if called.callee.is_some() || entity != text {
+        let _ = write!(out, "`{entity}`, ");
+    }
+    let tasks = called.unit.map(|it| index.task_names(it)).filter(|it| !it.is_empty() && *it != entity);
+    match (cursor::is_called(&unit.entity), tasks) {
+        (true, None) => {
+            let _ = write!(out, "called in {calls}");
         }
-        None => {
-            let _ = write!(out, "called in {}; the program does not hold it", count(calls.len(), "place"));
+        (true, Some(tasks)) => {
+            let _ = write!(out, "called in {calls}, runs in {tasks}");
         }
+        (false, None) => out.push_str(match unit.entity.block_kind() {
+            Some(BlockKind::Udt) => "type",
+            Some(it) if it.is_data() => "data block",
+            _ => "run by the system",
+        }),
+        (false, Some(tasks)) => {
+            let _ = write!(out, "runs in {tasks}");
+        }
+    }
+    let fields = unit.declared.iter().flat_map(|it| it.fields());
+    for declared in fields.filter(|it| section(it.section).is_some()) {
+        let word = section(declared.section).unwrap_or_default();
+        let _ = write!(out, "\n- {word} `{} : {}`", declared.name, declared.ty);
+    }
+    for item in unit.interface.iter().flat_map(|it| &it.items).filter(|it| is_parameter(it.role)) {
+        let _ = write!(out, "\n- {} `{} : {}`", item.role.describe(), item.name, item.ty.describe());
     }
     Some(out)
 }
@@ -160,25 +170,23 @@ fn of_object(
 ) -> String {
     let object = &named.object;
     let text = cursor.text(target.range);
-    let db = cursor.it.db;
-    let mut out = format!("**{text}**: {}", describe::kind(object));
-    let table = db::symbol_table(db, program.program);
-    let (address, symbol) = match object.text.starts_with('%') {
-        true => (object.text.clone(), table.symbol(&object.text)),
-        false => (table.address(&object.text).unwrap_or_else(|| object.text.clone()), Some(object.text.clone())),
-    };
-    if let Some(symbol) = symbol.filter(|it| !table.is_empty() && **it != *address) {
-        let _ = write!(out, "  \n`{address}`, symbol `{symbol}`");
-        if let Some(comment) = comment(cursor.it, program, &symbol) {
-            let _ = write!(out, ": {comment}");
+    let what = declared(cursor, &target.what, object, index).unwrap_or_else(|| describe::kind(object));
+    let mut out = format!("**{text}**: {what}");
+    let table = db::symbol_table(cursor.it.db, program.program);
+    let written = object.text.split('[').next().unwrap_or(&object.text);
+    if let Some(mut symbol) = table.symbol(written).filter(|it| cursor::key_in_code(it) != cursor::key_in_code(text)) {
+        // The table knows addresses in capitals; names of fields are shown as they are.
+        if let (Some((head, tail)), Some((_, own))) = (symbol.rsplit_once('.'), written.rsplit_once('.'))
+            && tail.eq_ignore_ascii_case(own)
+        {
+            symbol = format!("{head}.{own}").into();
         }
+        let _ = write!(out, "  \nsymbol `{symbol}`");
+    } else if let Some(address) = table.address(text.split('[').next().unwrap_or(text)) {
+        let _ = write!(out, "  \naddress `{address}`");
     }
-    if let Some(declared) = cursor::declaration(cursor.model, object) {
-        let word = section(declared.section).unwrap_or(match declared.section {
-            Section::Temp => "temporary",
-            _ => "static",
-        });
-        let _ = write!(out, "  \n{word} of type `{}`", declared.ty);
+    if let Some(comment) = comment(cursor.it, program, index, object) {
+        let _ = write!(out, "{}{comment}", if out.contains('\n') { ": " } else { "  \n" });
     }
     if object.indexed {
         out.push_str("  \nthe address is that of index 0; an index is added when the program runs");
@@ -189,6 +197,19 @@ fn of_object(
     }
     write_uses(&mut out, named, index);
     out
+}
+
+/// What runs a unit.
+fn task(unit: u32, index: &ProgramIndex<'_>) -> String {
+    let tasks = index.task_names(unit);
+    if !tasks.is_empty() {
+        return tasks;
+    }
+    match index.units.get(unit as usize) {
+        Some(it) if it.entity.block_kind() == Some(BlockKind::Ob) => it.entity.to_string(),
+        _ if index.is_startup(unit) => "start-up".to_owned(),
+        _ => "a task that is not known".to_owned(),
+    }
 }
 
 /// How often the object itself is used by what, and what shares memory with it.
@@ -211,9 +232,7 @@ fn write_uses(out: &mut String, named: &Named, index: &ProgramIndex<'_>) {
             }
             continue;
         }
-        let tasks = index.task_names(used.unit);
-        let task = if tasks.is_empty() { "a task that is not known".to_owned() } else { tasks };
-        let counts = by_task.entry(task).or_default();
+        let counts = by_task.entry(task(used.unit, index)).or_default();
         match used.mode {
             mode if mode.is_edge() => counts.edges += 1,
             Mode::EdgeMemory => counts.edges += 1,
@@ -223,7 +242,7 @@ fn write_uses(out: &mut String, named: &Named, index: &ProgramIndex<'_>) {
             }
         }
     }
-    if by_task.is_empty() && named.object.class != Class::CodeBlock {
+    if by_task.is_empty() && others.is_empty() && named.object.class != Class::CodeBlock {
         out.push_str("\n\nnot used by the program");
     }
     for (task, it) in &by_task {
@@ -239,14 +258,48 @@ fn write_uses(out: &mut String, named: &Named, index: &ProgramIndex<'_>) {
     }
 }
 
+/// What a name is that a block declares, or has as an instance of a DFB.
+fn declared(cursor: &InUnit<'_>, what: &What, object: &Object, index: &ProgramIndex<'_>) -> Option<String> {
+    if let Some(field) = cursor::declaration(cursor.model, object) {
+        let word = section(field.section).unwrap_or(match field.section {
+            Section::Temp => "temporary",
+            _ => "static",
+        });
+        let whole = format!("{word} of type `{}`", field.ty);
+        let Some((_, path)) = object.text.split_once('.').filter(|_| !matches!(what, What::Declaration(_))) else {
+            return Some(whole);
+        };
+        let layout = cursor.unit.entity(cursor.it.db).name().and_then(|it| index.layouts().of(it));
+        let place = layout.and_then(|it| it.place(&object.text)).and_then(|it| it.ty);
+        let ty = place.map_or_else(String::new, |it| format!(" of type `{}`", it.name()));
+        return Some(format!("component `{path}`{ty} of `{}`, {whole}", field.name));
+    }
+    let own = |it: &&Item| object.class == Class::LocalName && cursor::is_named(object, &it.name);
+    let own = cursor.model.interface.iter().flat_map(|it| &it.items).find(own);
+    if let Some(item) = own {
+        return Some(format!("{} of type `{}`", item.role.describe(), item.ty.describe()));
+    }
+    if object.class == Class::Data {
+        let (_, place) = cursor::field(object, index)?;
+        let is_whole = place.start == object.footprint.start && Some(place.bits) == object.ty.bits();
+        let part = if is_whole { "" } else { "part of " };
+        let ty = place.ty.map_or_else(String::new, |it| format!(" : {}", it.name()));
+        return Some(format!("{part}field `{}{ty}` in {}", place.path, describe::kind(object)));
+    }
+    if object.class != Class::Symbol {
+        return None;
+    }
+    let (site, item) = cursor::member(object, index)?;
+    let dfb = index.units.get(site.unit as usize)?.entity.to_string();
+    Some(format!("{} of type `{}` of `{dfb}`", item.role.describe(), item.ty.describe()))
+}
+
 /// The comment that the declaration of a symbol gives it.
-fn comment(it: InFile<'_>, program: &InProgram<'_>, symbol: &str) -> Option<String> {
-    let key = crate::model::symbols::key(symbol.split(['.', ':']).next().unwrap_or(symbol));
-    let units = db::program_units(it.db, program.program).iter();
-    let mut declaring = units.filter(|&&unit| !db::facts(it.db, unit).symbols.is_empty());
-    declaring.find_map(|&unit| {
-        let symbols = &db::model(it.db, unit).symbols;
-        let symbol = symbols.iter().find(|it| crate::model::symbols::key(&it.name) == key)?;
+fn comment(it: InFile<'_>, program: &InProgram<'_>, index: &ProgramIndex<'_>, object: &Object) -> Option<String> {
+    let units = db::program_units(it.db, program.program);
+    cursor::declaring(index, object).find_map(|(unit, declared)| {
+        let symbols = &db::model(it.db, *units.get(unit as usize)?).symbols;
+        let symbol = symbols.iter().find(|it| it.anchor == declared.anchor)?;
         symbol.comment.as_ref().map(ToString::to_string)
     })
 }

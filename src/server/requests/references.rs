@@ -7,8 +7,8 @@ use super::{Answer, Handle};
 use crate::analysis::Site;
 use crate::analysis::program::ProgramIndex;
 use crate::db::FilePlace;
-use crate::model::unit::{Callee, Mode};
-use crate::server::cursor::{self, InProgram, InUnit, Named, Target, What};
+use crate::model::unit::Mode;
+use crate::server::cursor::{Called, InProgram, InUnit, Named, Target, What};
 use crate::server::requests::definition;
 use crate::server::snapshot::Snapshot;
 
@@ -69,27 +69,9 @@ pub(super) fn found(cursor: Option<InUnit<'_>>, with_declarations: bool) -> Vec<
 }
 
 fn uses(cursor: &InUnit<'_>, target: &Target, index: &ProgramIndex<'_>, unit: u32) -> Vec<(Site, Mode)> {
-    if let Some(callee) = callee(cursor, target) {
-        let calls = index.calls.iter().filter(|it| it.it.callee == callee);
-        return calls.map(|it| (it.site(), Mode::Read)).collect();
+    if let Some(called) = Called::new(cursor, target, unit, index) {
+        return called.calls(index).map(|it| (it.site(), Mode::Read)).collect();
     }
-    let Some(named) = cursor::Named::new(cursor, target, unit, index) else { return Vec::new() };
-    named_uses(&named, index)
-}
-
-fn named_uses(named: &Named, index: &ProgramIndex<'_>) -> Vec<(Site, Mode)> {
+    let Some(named) = Named::new(cursor, target, unit, index) else { return Vec::new() };
     named.uses(index).into_iter().map(|(_, it)| (it.site(), it.mode)).collect()
-}
-
-/// What a call at the place calls; of a symbol that names an instance of a DFB, that instance.
-pub(super) fn callee(cursor: &InUnit<'_>, target: &Target) -> Option<Callee> {
-    match &target.what {
-        What::Call(at) => Some(cursor.model.calls.get(*at as usize)?.callee.clone()),
-        What::Symbol(at) => {
-            let symbol = cursor.model.symbols.get(*at as usize)?;
-            let is_instance = symbol.object.is_none();
-            is_instance.then(|| Callee::Instance(crate::model::symbols::key(&symbol.name)))
-        }
-        _ => None,
-    }
 }
