@@ -4,7 +4,6 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use crate::analysis::Site;
-use crate::analysis::facts::UnitFacts;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::dfb::Role;
 use crate::model::object::{Area, Class};
@@ -21,10 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// Of a type whose code is understood: what the code does not name. A public variable may serve the rest of the program.
 fn items(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut outside: FxHashSet<(u32, SmolStr)> = FxHashSet::default();
-    let has_public = |it: &UnitFacts| it.interface.iter().any(|it| it.items.iter().any(|it| it.role == Role::Public));
-    let is_asked = cx.program.units.iter().any(|it| has_public(it));
-    let places = is_asked.then(|| cx.program.places());
-    for it in places.into_iter().flatten().filter(|it| it.class == Class::Symbol) {
+    for it in cx.program.places().filter(|it| it.class == Class::Symbol) {
         if let Some((instance, item)) = it.text.split_once('.')
             && let Some((unit, _)) = cx.program.dfb_of(instance)
         {

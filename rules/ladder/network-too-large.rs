@@ -13,9 +13,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for rung in cx.nodes(SyntaxKind::Rung).filter_map(Rung::cast) {
         let rows = Grid::rows_of(rung, layout);
         // Where a cell was not read, nobody knows how many there are.
-        let is_read = || !rung.syntax().descendants().any(|it| it.kind() == SyntaxKind::Error);
         for row in &rows {
-            let Some(cell) = row.excess.filter(|_| is_read()) else { continue };
+            let Some(cell) = row.excess.filter(|_| !rung.syntax().has_error()) else { continue };
             let has_assumed = row.is_assumed;
             let found = sink.report(
                 cell.syntax().text_range(),

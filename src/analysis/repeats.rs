@@ -295,8 +295,8 @@ struct All<'a> {
 
 impl<'a> All<'a> {
     fn new(program: &ProgramIndex<'a>) -> Self {
-        let formss = (0..).zip(&program.units).filter_map(|(unit, it)| Some((unit, it.forms.as_deref()?)));
-        let items = formss.flat_map(|(unit, it)| (0..it.items.len()).map(move |at| (unit, it, at))).collect();
+        let all = (0..).zip(&program.units).filter_map(|(unit, it)| Some((unit, it.forms.as_deref()?)));
+        let items = all.flat_map(|(unit, it)| (0..it.items.len()).map(move |at| (unit, it, at))).collect();
         Self { items }
     }
 

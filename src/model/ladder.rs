@@ -12,7 +12,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::sets::Sets;
 use crate::syntax::pl7::ast::{Cell, Expr, Rung};
 use crate::syntax::pl7::ladder_words::Element;
-use crate::syntax::{AstNode as _, Language, SyntaxKind};
+use crate::syntax::{AstNode as _, Language};
 use crate::target::{pl7, pl72};
 
 /// Whose rungs.
@@ -168,7 +168,7 @@ impl Placed<'_> {
 
     /// Whether a part of the cell was not understood.
     pub fn is_broken(&self) -> bool {
-        self.cell.syntax().descendants().any(|it| it.kind() == SyntaxKind::Error)
+        self.cell.syntax().has_error()
     }
 
     fn is_link(&self) -> bool {

@@ -144,6 +144,11 @@ impl<'t> SyntaxNode<'t> {
         Walk { open: Vec::new(), next: Some(self) }
     }
 
+    /// Whether part of it was not understood.
+    pub fn has_error(self) -> bool {
+        self.descendants().any(|it| it.kind() == SyntaxKind::Error)
+    }
+
     /// This node and every node below it, in the order of the text.
     pub fn descendants(self) -> impl Iterator<Item = SyntaxNode<'t>> {
         self.walk().filter_map(|it| match it {

@@ -9,6 +9,7 @@ use rustc_hash::FxHashSet;
 
 use super::{Answer, Handle};
 use crate::analysis::program::ProgramIndex;
+use crate::analysis::symbols::SymbolTable;
 use crate::db;
 use crate::model::dfb::Role;
 use crate::model::entity::{BlockKind, BlockName, Entity, Family};
@@ -77,7 +78,9 @@ impl Handle for Handler {
         if let Some((program, unit)) = cursor.program() {
             let program = InProgram::new(it, program);
             let index = program.index();
-            let is_member = typed.owner.is_some_and(|owner| found.members(owner, &cursor, &program, &index, unit));
+            let own = index.units.get(unit as usize).and_then(|it| it.entity.name());
+            let table = db::symbol_table(it.db, program.program);
+            let is_member = typed.owner.is_some_and(|owner| found.members(owner, own, table, &index));
             if !is_member {
                 found.parameters(&cursor, &index);
                 if typed.is_operand {
@@ -280,17 +283,10 @@ impl Found {
         }
     }
 
-    /// What a name has behind a dot. `false` when it has nothing that is known.
-    fn members(
-        &mut self,
-        owner: &str,
-        cursor: &InUnit<'_>,
-        program: &InProgram<'_>,
-        index: &ProgramIndex<'_>,
-        unit: u32,
-    ) -> bool {
+    /// What a name has behind a dot, in a block of the name `own`. `false` when it has nothing that is known.
+    fn members(&mut self, owner: &str, own: Option<&BlockName>, table: &SymbolTable, index: &ProgramIndex<'_>) -> bool {
         if index.family == Family::Step7 {
-            self.fields(owner, cursor, program, index, unit);
+            self.fields(owner, own, table, index);
         } else {
             let instances = index.units.iter().flat_map(|it| &it.symbols).filter(|it| it.object.is_none());
             let instance = instances.into_iter().find(|it| key(&it.name) == key(owner));
@@ -306,18 +302,9 @@ impl Found {
     }
 
     /// The fields of a data block, or of a variable that is a structure.
-    fn fields(
-        &mut self,
-        owner: &str,
-        cursor: &InUnit<'_>,
-        program: &InProgram<'_>,
-        index: &ProgramIndex<'_>,
-        unit: u32,
-    ) {
-        let Some(facts) = index.units.get(unit as usize) else { return };
-        let table = db::symbol_table(cursor.it.db, program.program);
+    fn fields(&mut self, owner: &str, own: Option<&BlockName>, table: &SymbolTable, index: &ProgramIndex<'_>) {
         let (block, path) = if let Some(path) = owner.strip_prefix('#') {
-            let Some(name) = facts.entity.name() else { return };
+            let Some(name) = own else { return };
             (name.clone(), path.to_owned())
         } else {
             // A field of the block, whatever it is called, leads to the block.

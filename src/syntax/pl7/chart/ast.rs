@@ -237,7 +237,7 @@ impl<'t> Transition<'t> {
 
     /// Whether part of the code was not understood.
     pub fn has_error(self) -> bool {
-        self.syntax().descendants().any(|it| it.kind() == SyntaxKind::Error)
+        self.syntax().has_error()
     }
 }
 
