@@ -102,6 +102,37 @@ fn edit_at_random(folder: &Path, seed: u64, edits: usize) {
     }
 }
 
+/// A step that the program sets bears on every object whose conditions ask for steps of its chart.
+#[test]
+fn what_moves_steps_is_felt_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    of(
+        "chart.txt",
+        "GR7 : MAST - Cycle - CHART\nINITIAL_STEP X0 : END_STEP\nSTEP X1 : END_STEP\nTRANSITION FROM X0 TO X1 := %I1.0; \
+         END_TRANSITION\nTRANSITION FROM X1 TO X0 := %I1.1; END_TRANSITION\n",
+    );
+    of(
+        "post.txt",
+        "ST : MAST - Cycle - POST\n! IF %X0 THEN %Q2.0 := %I1.4; END_IF;\n! IF %X1 THEN %Q2.0 := %I1.5; END_IF;\n",
+    );
+    of("prl.txt", "ST : MAST - Cycle - PRL\n! IF %M0 THEN SET %M1; END_IF;\n");
+    let settings = settings(folder.path());
+    let inputs = load::read(&[folder.path().to_owned()], &settings, Dialect::Auto).inputs;
+    let (mut db, files) = open(inputs.clone(), settings);
+    let preliminary = inputs.iter().position(|it| it.source.text.contains("SET %M1")).unwrap();
+    let mut moved = |step: &str| {
+        let text = format!("ST : MAST - Cycle - PRL\n! IF %M0 THEN {step}; END_IF;\n");
+        db.set_text(files[preliminary], text.as_str());
+        found(&db, &files).iter().any(|it| it.contains(" W001 ") && it.contains("%Q2.0"))
+    };
+    assert!(!moved("SET %M1"));
+    assert!(moved("SET %X1"));
+    assert!(!moved("SET %M2"));
+    assert!(!moved("RESET %X1"));
+    assert!(moved("SET %X1"));
+}
+
 fn corpus(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(folder);
     let mut folders: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|it| it.unwrap().path()).collect();

@@ -1,8 +1,8 @@
 //! W002: a bit driven both by assignment and by set or reset.
 
 use crate::analysis::Site;
-use crate::analysis::drives;
 use crate::analysis::program::GlobalUse;
+use crate::analysis::{apart, drives};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Area, Class, Type};
 use crate::model::unit::Mode;
@@ -34,7 +34,9 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         // A reset below the assignment in the same unit takes part of the assigned condition back.
         let corrects = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| a.unit == b.unit && b.mode == Mode::Reset;
-        let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| stored(a) != stored(b) && !corrects(a, b);
+        let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
+            stored(a) != stored(b) && !corrects(a, b) && !apart::never_together(cx.program, || cx.studies(), a, b)
+        };
         let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) else { continue };
         let label = match second.mode {
             Mode::Set | Mode::Reset => format!("{} here, where the assignment does not reach", second.mode.verb()),

@@ -4,7 +4,7 @@ use std::cell::LazyCell;
 
 use crate::analysis::Site;
 use crate::analysis::program::GlobalUse;
-use crate::analysis::{coactive, drives};
+use crate::analysis::{apart, coactive, drives};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::object::{Class, Type};
 use crate::model::unit::Mode;
@@ -46,7 +46,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let opposed = |a: &GlobalUse<'_>, b: &GlobalUse<'_>| {
             let has_effect = is_kept && reading.between(a, b)
                 || [a, b].iter().all(|it| drives::is_of_cleared_table(cx.program, it, cx.neighbours(at)));
-            drives::override_each_other(a, b) && !drives::of_one_instance(cx.program, a, b) && !has_effect
+            drives::override_each_other(a, b)
+                && !drives::of_one_instance(cx.program, a, b)
+                && !has_effect
+                && !apart::never_together(cx.program, || cx.studies(), a, b)
         };
         if let Some((second, others)) = drives::conflict(cx.program, &writes, opposed) {
             sink.report(second.site(), format!("`{}` is assigned in more than one place", uses.object.text))

@@ -7,6 +7,7 @@ use std::hash::BuildHasher as _;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
+use super::apart::{self, Asking};
 use super::chart::ChartFacts;
 use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
@@ -135,6 +136,8 @@ pub struct UnitFacts {
     /// Pairs of uses, by anchor, the smaller first, that never take effect in the same scan: of a set, reset or edge
     /// memory with another write of its object. Sorted. [`Use::group`] says it of the other writes.
     pub exclusive_uses: Vec<(u32, u32)>,
+    /// Conditions that ask for steps of charts, by the places that they lead to.
+    pub asking: Option<Box<Asking>>,
     /// For a data block: the block that it is an instance of.
     pub instance_of: Option<BlockName>,
     /// Whether it opens another data block in place of its instance.
@@ -299,6 +302,7 @@ impl UnitFacts {
             indexes: model.indexes.clone(),
             exclusive_calls: exclusive_calls(model),
             exclusive_uses: exclusive_uses(model, &given),
+            asking: Asking::new(model),
             instance_of: model.instance_of.clone(),
             opens_instance: model.opens_instance,
             declared: model.declared.clone().map(Box::new),
@@ -353,6 +357,7 @@ impl UnitFacts {
             && self.symbols.iter().zip(&old.symbols).all(is_same_symbol)
             && self.chart == old.chart
             && self.interface == old.interface
+            && apart::commands(self) == apart::commands(old)
             && condition(self) == condition(old);
         let is_named_same = self.entity == old.entity && self.declared == old.declared;
         if !(is_same && (is_named_same || is_code(self) && is_code(old))) {
@@ -571,14 +576,14 @@ fn same_drive(model: &UnitModel, given: &Given, first: (u32, &Access), second: (
     if default && a.path != b.path && model.exprs.has_conjunct_prefix(b.path, a.path) {
         return true;
     }
-    let (a, b) = (effective(model, first, a.path), effective(model, second, b.path));
+    let (a, b) = (effective(model, first.1, a.path), effective(model, second.1, b.path));
     Space::of(model).together(&[a.0, a.1, b.0, b.1]) == Verdict::Never
 }
 
 /// Path to a write, and the condition at the instruction itself. A pin of a timer or counter takes 0 as well as 1: the
 /// instruction acts whatever its condition.
-fn effective(model: &UnitModel, write: (u32, &Access), path: ExprId) -> (ExprId, ExprId) {
-    let when = match model.statement(write.1).map(|it| &it.kind) {
+pub(super) fn effective(model: &UnitModel, write: &Access, path: ExprId) -> (ExprId, ExprId) {
+    let when = match model.statement(write).map(|it| &it.kind) {
         Some(StatementKind::Set { when, .. } | StatementKind::Reset { when, .. }) => *when,
         Some(StatementKind::Call(call)) => model.calls.get(*call as usize).map_or(Exprs::TRUE, |it| it.when),
         _ => Exprs::TRUE,

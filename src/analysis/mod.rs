@@ -2,6 +2,7 @@
 //!
 //! **Invariant:** what leaves a unit ([`facts`]) holds no position, so that an edit that only moves code stops there.
 
+pub mod apart;
 pub mod calls;
 pub mod capacity;
 pub mod channels;

@@ -4,6 +4,7 @@ use std::cell::OnceCell;
 
 use super::Site;
 use super::chart::{ChartFacts, FactAction};
+use super::facts::UnitFacts;
 use super::program::{GlobalCall, GlobalUse, ObjectUses, ProgramIndex};
 use super::reach::{Net, Node};
 use crate::model::chart::{ActionKind, Graph, StepName};
@@ -90,8 +91,18 @@ pub struct InAction<'a> {
 
 impl<'a> InAction<'a> {
     pub fn of(program: &ProgramIndex<'a>, it: &GlobalUse<'_>) -> Option<Self> {
-        let chart = program.units.get(it.unit as usize)?.chart.as_deref()?;
-        Some(Self { chart, action: chart.action_at(it.it.anchor)? })
+        Self::at(program.units.get(it.unit as usize)?, it.it.anchor)
+    }
+
+    /// The action that a place of a unit stands in.
+    pub fn at(unit: &'a UnitFacts, anchor: u32) -> Option<Self> {
+        let chart = unit.chart.as_deref()?;
+        Some(Self { chart, action: chart.action_at(anchor)? })
+    }
+
+    /// Whether it runs in no scan in which none of its steps is active.
+    pub fn is_while_active(&self) -> bool {
+        matches!(self.action.kind, Some(ActionKind::Continuous | ActionKind::Activation))
     }
 
     /// Whether it runs while its steps are active.

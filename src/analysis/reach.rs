@@ -177,8 +177,6 @@ impl<'p, 'a> Study<'p, 'a> {
     /// For each other part whose steps the receptivities ask for: the states that these steps can have. Left out where the
     /// program may set them.
     fn states_beside(&self, part: &Part, crossings: &[usize]) -> Vec<Vec<Vec<(ExprId, bool)>>> {
-        /// Of more steps, not every subset is looked at.
-        const MOST_STEPS: usize = 6;
         let net = &self.net;
         let mut reads: FxHashSet<ExprId> = FxHashSet::default();
         for it in crossings {
@@ -189,33 +187,49 @@ impl<'p, 'a> Study<'p, 'a> {
             }
         }
         let mut found = Vec::new();
-        if !net.is_drawn || !self.knows_all() {
+        if !net.is_drawn {
             return found;
         }
-        for other in self.parts.iter().filter(|it| !std::ptr::eq(*it, part) && !it.all.is_partial) {
-            let nodes = &other.component.nodes;
-            let read =
-                |(at, node): (usize, &Node)| Some((at, *net.step_reads.get(node).filter(|it| reads.contains(*it))?));
-            let asked: Vec<(usize, ExprId)> = nodes.iter().enumerate().filter_map(read).collect();
-            let is_set = net.presets.iter().flatten().any(|it| nodes.binary_search(it).is_ok());
-            let loses_steps = net.is_commanded || nodes.iter().any(|it| net.resets.contains(it));
-            if asked.is_empty() || is_set || loses_steps && asked.len() > MOST_STEPS {
-                continue;
+        for other in self.parts.iter().filter(|it| !std::ptr::eq(*it, part)) {
+            let read = |node: &Node| Some((*node, *net.step_reads.get(node).filter(|it| reads.contains(*it))?));
+            let (nodes, asked): (Vec<Node>, Vec<ExprId>) = other.component.nodes.iter().filter_map(read).unzip();
+            if let Some(states) = self.states(other, &other.all, &nodes, &[]).filter(|_| !nodes.is_empty()) {
+                found.push(states.into_iter().map(|it| asked.iter().copied().zip(it).collect()).collect());
             }
-            let mut states: FxHashSet<Vec<(ExprId, bool)>> = FxHashSet::default();
-            for situation in &other.all.situations {
-                let state: Vec<(ExprId, bool)> = asked.iter().map(|it| (it.1, has(situation, it.0))).collect();
-                // What the program resets may be missing from any situation.
-                let subsets = if loses_steps { 1 << state.len() } else { 1 };
-                states.extend((0..subsets).map(|lost: usize| {
-                    (0..).zip(&state).map(|(at, it)| (it.0, it.1 && lost >> at & 1 == 0)).collect()
-                }));
-            }
-            let mut states: Vec<Vec<(ExprId, bool)>> = states.into_iter().collect();
-            states.sort_unstable();
-            found.push(states);
         }
         found
+    }
+
+    /// The states that some steps of a part can have together, in situations with a step of each list of `active`. `None`
+    /// where that is not known: the program may set steps, or something was not understood or not looked at to the end.
+    pub fn states(&self, part: &Part, reached: &Reached, asked: &[Node], active: &[&[Node]]) -> Option<Vec<Vec<bool>>> {
+        /// Of more steps, not every subset is looked at.
+        const MOST_STEPS: usize = 6;
+        let (net, nodes) = (&self.net, &part.component.nodes);
+        let is_set = net.presets.iter().flatten().any(|it| nodes.binary_search(it).is_ok());
+        let loses_steps = net.is_commanded || nodes.iter().any(|it| net.resets.contains(it));
+        if is_set || !self.knows_all() || reached.is_partial || loses_steps && asked.len() > MOST_STEPS {
+            return None;
+        }
+        let places =
+            |all: &[Node]| -> Vec<usize> { all.iter().filter_map(|it| nodes.binary_search(it).ok()).collect() };
+        let (asked, active): (Vec<usize>, Vec<Vec<usize>>) =
+            (places(asked), active.iter().map(|it| places(it)).collect());
+        let mut states: FxHashSet<Vec<bool>> = FxHashSet::default();
+        for situation in &reached.situations {
+            if !active.iter().all(|it| it.iter().any(|at| has(situation, *at))) {
+                continue;
+            }
+            let state: Vec<bool> = asked.iter().map(|it| has(situation, *it)).collect();
+            // What the program resets may be missing from any situation.
+            let subsets = if loses_steps { 1 << state.len() } else { 1 };
+            states.extend((0..subsets).map(|lost: usize| {
+                (0..).zip(&state).map(|(at, it)| *it && lost >> at & 1 == 0).collect::<Vec<bool>>()
+            }));
+        }
+        let mut states: Vec<Vec<bool>> = states.into_iter().collect();
+        states.sort_unstable();
+        Some(states)
     }
 
     /// Whether a step that no situation holds is surely never active.
@@ -384,6 +398,20 @@ impl<'p, 'a> Net<'p, 'a> {
         }
     }
 
+    pub fn family(&self) -> Family {
+        self.family
+    }
+
+    /// The step whose bit an object is.
+    pub fn node_at(&self, object: &Object) -> Option<Node> {
+        step_of(&self.charts, object).map(|(chart, step)| self.node(chart, step))
+    }
+
+    /// Whether the program resets a step.
+    pub fn is_reset(&self, node: Node) -> bool {
+        self.resets.contains(&node)
+    }
+
     pub fn space(&self) -> Space<'_> {
         Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family, known: &[] }
     }
@@ -429,7 +457,7 @@ impl<'p, 'a> Net<'p, 'a> {
             if let Some(read) = self.exprs.find_read(ObjectId(at), 0)
                 && object.class == Class::Step
                 && object.is_fixed()
-                && let Some(node) = step_of(&self.charts, object).map(|(chart, step)| self.node(chart, step))
+                && let Some(node) = self.node_at(object)
             {
                 self.step_reads.insert(node, read);
             }
@@ -477,7 +505,7 @@ impl<'p, 'a> Net<'p, 'a> {
                 continue;
             }
             // Another chart's step is none of ours.
-            let step = step_of(&self.charts, object).map(|(chart, step)| self.node(chart, step));
+            let step = self.node_at(object);
             self.writes_anywhere |= !object.is_fixed() || object.ty.is_table();
             if let Some(node) = step {
                 if uses.has_mode(|it| it.writes() && it != Mode::Set) {
