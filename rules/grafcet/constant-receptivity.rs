@@ -26,7 +26,7 @@ fn judge(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<'_, Site>) {
     for &it in part.component.crossings.iter().filter(|it| is_asked(**it)) {
         // A constant is written on purpose.
         let is_judged = net.is_ever_valid(&part.all, it) && net.has_objects(it);
-        if is_judged && net.can_be(&part.component, &part.all, &[(it, false)]).is_never() {
+        if is_judged && study.can_be_but(part, &[(it, false)], |it| study.is_dead_beside(part, it)).is_never() {
             sink.report(site(it), "the receptivity is always true");
         }
     }

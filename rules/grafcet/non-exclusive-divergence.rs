@@ -41,7 +41,7 @@ fn divergence(
     let found: Vec<(usize, Witness)> = beside
         .into_iter()
         .filter(|it| compare(*it, later))
-        .filter_map(|it| match study.can_be_true(part, &[it, later]) {
+        .filter_map(|it| match study.can_be(part, &[(it, true), (later, true)]) {
             Answer::Possible(witness) => Some((it, witness)),
             Answer::Never | Answer::NotDecided => None,
         })

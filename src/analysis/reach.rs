@@ -7,6 +7,8 @@
 //!
 //! Charts that nothing connects are looked at apart. What is too large is said to be not decided.
 
+use std::collections::BTreeMap;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
@@ -95,8 +97,8 @@ pub struct Net<'p, 'a> {
     /// By node: the crossings that it is before, and those that it is behind.
     leaving: Vec<Vec<usize>>,
     entering: Vec<Vec<usize>>,
-    /// Reads of step bits of this net, by node.
-    step_reads: FxHashMap<Node, ExprId>,
+    /// Reads of step bits of this net.
+    steps_read: FxHashMap<ExprId, Node>,
 }
 
 /// Steps that transitions connect.
@@ -118,12 +120,16 @@ pub struct Part {
     pub own: Reached,
     /// From there and from what the program sets, as receptivities allow.
     pub all: Reached,
+    /// Steps that none of these situations holds. Sorted.
+    pub never_active: Vec<Node>,
 }
 
 /// The charts of a section, and what they reach.
 pub struct Study<'p, 'a> {
     pub net: Net<'p, 'a>,
     pub parts: Vec<Part>,
+    /// By node: the part that has it.
+    part_of: Vec<Option<usize>>,
 }
 
 impl<'p, 'a> Study<'p, 'a> {
@@ -137,24 +143,34 @@ impl<'p, 'a> Study<'p, 'a> {
         let part = |component: Component| {
             let own = net.reach(&component);
             let all = net.reach_all(&component);
-            Part { component, own, all }
+            let never_active = all.never_active(&component);
+            Part { component, own, all, never_active }
         };
-        let parts = components.into_iter().map(part).collect();
-        Self { net, parts }
+        let parts: Vec<Part> = components.into_iter().map(part).collect();
+        let mut part_of = vec![None; net.nodes.len()];
+        for (at, part) in parts.iter().enumerate() {
+            part.component.nodes.iter().for_each(|it| part_of[*it as usize] = Some(at));
+        }
+        Self { net, parts, part_of }
     }
 
-    /// Whether receptivities of a part can be true together in some situation in which their transitions are valid, with the
-    /// values that do it. The other charts of the section are in situations that they reach, as far as these are known.
-    pub fn can_be_true(&self, part: &Part, crossings: &[usize]) -> Answer {
+    /// Whether receptivities of a part can have the values wanted of them in some situation in which all their transitions
+    /// are valid, with the values of objects that do it. The other charts of the section are in situations that they reach,
+    /// as far as these are known. Never where no situation is such, or a receptivity is not known.
+    pub fn can_be(&self, part: &Part, wanted: &[(usize, bool)]) -> Answer {
+        self.can_be_but(part, wanted, |_| false)
+    }
+
+    /// The same, where some steps have any state whatever the situation.
+    pub fn can_be_but(&self, part: &Part, wanted: &[(usize, bool)], is_free: impl Fn(Node) -> bool) -> Answer {
         /// More ways for the other charts to stand are not told apart.
         const MOST: usize = 256;
-        let wanted: Vec<(usize, bool)> = crossings.iter().map(|it| (*it, true)).collect();
-        let free = self.net.can_be(&part.component, &part.all, &wanted);
+        let free = self.net.can_be_beside(part, wanted, &[], &is_free);
         if !matches!(free, Answer::Possible(_)) {
             return free;
         }
         let mut ways: Vec<Vec<(ExprId, bool)>> = vec![Vec::new()];
-        for states in self.states_beside(part, crossings) {
+        for states in self.states_beside(part, wanted, &is_free) {
             if states.len() * ways.len() > MOST {
                 return free;
             }
@@ -165,7 +181,7 @@ impl<'p, 'a> Study<'p, 'a> {
         }
         let mut answer = Answer::Never;
         for way in ways {
-            match self.net.can_be_beside(&part.component, &part.all, &wanted, &way, |_| false) {
+            match self.net.can_be_beside(part, wanted, &way, &is_free) {
                 Answer::Never => {}
                 Answer::NotDecided => answer = Answer::NotDecided,
                 found @ Answer::Possible(_) => return found,
@@ -174,33 +190,45 @@ impl<'p, 'a> Study<'p, 'a> {
         answer
     }
 
-    /// For each other part whose steps the receptivities ask for: the states that these steps can have. Left out where the
-    /// program may set them.
-    fn states_beside(&self, part: &Part, crossings: &[usize]) -> Vec<Vec<Vec<(ExprId, bool)>>> {
-        let net = &self.net;
-        let mut reads: FxHashSet<ExprId> = FxHashSet::default();
-        for it in crossings {
-            if let Guarded::By(guard) = net.crossings[*it].guard {
-                net.exprs.each_read(guard, |it| {
-                    reads.insert(it);
-                });
-            }
-        }
-        let mut found = Vec::new();
-        if !net.is_drawn {
-            return found;
-        }
-        for other in self.parts.iter().filter(|it| !std::ptr::eq(*it, part)) {
-            let read = |node: &Node| Some((*node, *net.step_reads.get(node).filter(|it| reads.contains(*it))?));
-            let (nodes, asked): (Vec<Node>, Vec<ExprId>) = other.component.nodes.iter().filter_map(read).unzip();
-            if let Some(states) = self.states(other, &other.all, &nodes, &[]).filter(|_| !nodes.is_empty()) {
-                found.push(states.into_iter().map(|it| asked.iter().copied().zip(it).collect()).collect());
-            }
-        }
-        found
+    /// Whether a step of another part is never active: that is a finding of its own there.
+    pub fn is_dead_beside(&self, part: &Part, node: Node) -> bool {
+        let of = self.part_of.get(node as usize).copied().flatten().and_then(|it| self.parts.get(it));
+        of.is_some_and(|it| !std::ptr::eq(it, part) && it.never_active.binary_search(&node).is_ok())
     }
 
-    /// The states that some steps of a part can have together, in situations with a step of each list of `active`. `None`
+    /// For each other part whose steps the receptivities ask for: the states that these steps can have. Left out where the
+    /// program may set them.
+    fn states_beside(
+        &self,
+        part: &Part,
+        wanted: &[(usize, bool)],
+        is_free: impl Fn(Node) -> bool,
+    ) -> Vec<Vec<Vec<(ExprId, bool)>>> {
+        let net = &self.net;
+        // By part.
+        let mut asked: BTreeMap<usize, Vec<(Node, ExprId)>> = BTreeMap::new();
+        for (it, _) in wanted.iter().filter(|_| net.is_drawn) {
+            let Guarded::By(guard) = net.crossings[*it].guard else { continue };
+            net.exprs.each_read(guard, |read| {
+                let Some(&node) = net.steps_read.get(&read).filter(|it| !is_free(**it)) else { return };
+                let of = self.part_of.get(node as usize).copied().flatten();
+                if let Some(of) = of.filter(|it| !std::ptr::eq(&raw const self.parts[*it], part)) {
+                    asked.entry(of).or_default().push((node, read));
+                }
+            });
+        }
+        let states = |(of, mut asked): (usize, Vec<(Node, ExprId)>)| {
+            asked.sort_unstable();
+            asked.dedup();
+            let (nodes, reads): (Vec<Node>, Vec<ExprId>) = asked.into_iter().unzip();
+            let other = &self.parts[of];
+            let states = self.states(other, &other.all, &nodes, &[])?;
+            Some(states.into_iter().map(|it| reads.iter().copied().zip(it).collect()).collect())
+        };
+        asked.into_iter().filter_map(states).collect()
+    }
+
+    /// The states that some steps of a part have together, in situations with a step of each list of `active`. `None`
     /// where that is not known: the program may set steps, or something was not understood or not looked at to the end.
     pub fn states(&self, part: &Part, reached: &Reached, asked: &[Node], active: &[&[Node]]) -> Option<Vec<Vec<bool>>> {
         /// Of more steps, not every subset is looked at.
@@ -276,6 +304,17 @@ pub struct Reached {
     pub lost: Vec<(u32, usize, Node)>,
 }
 
+impl Reached {
+    /// Steps that no situation holds.
+    fn never_active(&self, component: &Component) -> Vec<Node> {
+        let mut active = vec![0_u64; component.nodes.len().div_ceil(64)];
+        for situation in &self.situations {
+            active.iter_mut().zip(situation).for_each(|(all, it)| *all |= it);
+        }
+        component.nodes.iter().enumerate().filter(|it| !has(&active, it.0)).map(|it| *it.1).collect()
+    }
+}
+
 impl<'p, 'a> Net<'p, 'a> {
     /// One for each section with charts, in the order of the program.
     pub fn all(program: &'p ProgramIndex<'a>) -> Vec<Self> {
@@ -316,7 +355,7 @@ impl<'p, 'a> Net<'p, 'a> {
         net.cross(|_, it| it);
         net.objects = objects;
         for (node, &step) in (0..).zip(steps) {
-            net.step_reads.extend(net.exprs.find_read(step, 0).map(|it| (node, it)));
+            net.steps_read.extend(net.exprs.find_read(step, 0).map(|it| (it, node)));
         }
         net.find_supports();
         net.presets = presets;
@@ -343,7 +382,7 @@ impl<'p, 'a> Net<'p, 'a> {
             supports: Vec::new(),
             leaving: Vec::new(),
             entering: Vec::new(),
-            step_reads: FxHashMap::default(),
+            steps_read: FxHashMap::default(),
         }
     }
 
@@ -459,7 +498,7 @@ impl<'p, 'a> Net<'p, 'a> {
                 && object.is_fixed()
                 && let Some(node) = self.node_at(object)
             {
-                self.step_reads.insert(node, read);
+                self.steps_read.insert(read, node);
             }
         }
     }
@@ -579,7 +618,6 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     fn find_routes(&mut self, component: &mut Component) {
-        let nodes_read: FxHashMap<ExprId, Node> = self.step_reads.iter().map(|it| (*it.1, *it.0)).collect();
         component.behind = vec![Vec::new(); component.nodes.len()];
         for &at in &component.crossings {
             let it = &self.crossings[at];
@@ -587,7 +625,7 @@ impl<'p, 'a> Net<'p, 'a> {
             let mut asked: Vec<(usize, ExprId)> = Vec::new();
             if let Guarded::By(guard) = it.guard {
                 self.exprs.each_read(guard, |read| {
-                    asked.extend(nodes_read.get(&read).and_then(place).map(|at| (at, read)));
+                    asked.extend(self.steps_read.get(&read).and_then(place).map(|at| (at, read)));
                 });
             }
             asked.sort_unstable();
@@ -703,38 +741,21 @@ impl<'p, 'a> Net<'p, 'a> {
         format!("{first} -> ... -> {last}")
     }
 
-    /// Whether receptivities can have the values wanted of them in some situation in which all their transitions are valid,
-    /// with the values of objects that do it. Never where no situation is such, or one of them is not known.
-    pub fn can_be(&self, component: &Component, reached: &Reached, wanted: &[(usize, bool)]) -> Answer {
-        self.can_be_but(component, reached, wanted, |_| false)
-    }
-
     /// Steps of its part whose bits the receptivity of a transition asks for.
     pub fn asked_of(&self, component: &Component, crossing: usize) -> impl Iterator<Item = Node> {
         let asked = self.crossings[crossing].route.asked.iter();
         asked.filter_map(|it| component.nodes.get(it.0).copied())
     }
 
-    /// The same, had some steps any state whatever the situation.
-    pub fn can_be_but(
-        &self,
-        component: &Component,
-        reached: &Reached,
-        wanted: &[(usize, bool)],
-        is_free: impl Fn(Node) -> bool,
-    ) -> Answer {
-        self.can_be_beside(component, reached, wanted, &[], is_free)
-    }
-
-    /// The same, while something else holds.
+    /// See [`Study::can_be_but`]; `beside`: what else holds.
     fn can_be_beside(
         &self,
-        component: &Component,
-        reached: &Reached,
+        part: &Part,
         wanted: &[(usize, bool)],
         beside: &[(ExprId, bool)],
-        is_free: impl Fn(Node) -> bool,
+        is_free: &impl Fn(Node) -> bool,
     ) -> Answer {
+        let (component, reached) = (&part.component, &part.all);
         let guards: Option<Vec<(ExprId, bool)>> = wanted
             .iter()
             .map(|&(it, value)| match self.crossings[it].guard {
@@ -1209,8 +1230,9 @@ mod tests {
             let studies = Study::all(&program);
             let study = &studies[0];
             let part = &study.parts[0];
-            let branches: Vec<usize> = study.net.leaving(part.component.initial[0]).to_vec();
-            let can = matches!(study.can_be_true(part, &branches), Answer::Possible(_));
+            let leaving = study.net.leaving(part.component.initial[0]);
+            let branches: Vec<(usize, bool)> = leaving.iter().map(|it| (*it, true)).collect();
+            let can = matches!(study.can_be(part, &branches), Answer::Possible(_));
             assert_eq!(can, expected, "{a}, {b}, {other}{preliminary}");
         }
     }
@@ -1634,7 +1656,7 @@ mod tests {
                     for &b in &part.component.crossings[..at] {
                         let from = &study.net.crossings[b].from;
                         if study.net.crossings[a].from.iter().any(|it| from.contains(it)) {
-                            prop_assert!(study.can_be_true(part, &[a, b]).is_never());
+                            prop_assert!(study.can_be(part, &[(a, true), (b, true)]).is_never());
                         }
                     }
                 }

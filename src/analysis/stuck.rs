@@ -22,18 +22,12 @@ pub struct Stuck {
 /// Of more transitions that wait for steps, each is taken for a cause.
 const MOST: usize = 256;
 
-/// Steps that no situation holds, in the order of the part.
-pub fn never_active(net: &Net<'_, '_>, part: &Part) -> Vec<Node> {
-    let reached: FxHashSet<Node> = part.all.situations.iter().flat_map(|it| net.active(&part.component, it)).collect();
-    part.component.nodes.iter().copied().filter(|it| !reached.contains(it)).collect()
-}
-
 impl Stuck {
     pub fn of(study: &Study<'_, '_>, part: &Part) -> Self {
         let net = &study.net;
         let is_true = |it: usize, never: &FxHashSet<Node>| {
-            let answer = net.can_be_but(&part.component, &part.all, &[(it, true)], |it| never.contains(&it));
-            !answer.is_never()
+            let is_free = |it: Node| never.contains(&it) || study.is_dead_beside(part, it);
+            !study.can_be_but(part, &[(it, true)], is_free).is_never()
         };
         let none = FxHashSet::default();
         let stuck: Vec<usize> = part
@@ -52,7 +46,7 @@ impl Stuck {
         if stuck.is_empty() {
             return Self::default();
         }
-        let never: FxHashSet<Node> = never_active(net, part).into_iter().collect();
+        let never: FxHashSet<Node> = part.never_active.iter().copied().collect();
         let (mut waiting, mut causes): (Vec<usize>, Vec<usize>) =
             stuck.into_iter().partition(|it| is_true(*it, &never));
         causes.extend(waiting.drain(MOST.min(waiting.len())..));
