@@ -1,7 +1,7 @@
 //! G001: alternative branches of a chart that can be taken together.
 
 use crate::analysis::Site;
-use crate::analysis::conditions::{Answer, Witness};
+use crate::analysis::conditions::{self, Answer, Witness};
 use crate::analysis::priority;
 use crate::analysis::reach::{Part, Study};
 
@@ -54,7 +54,7 @@ fn divergence(
     }
     let space = net.space();
     let values: Vec<String> = witness.given.iter().map(|it| space.describe(it)).collect();
-    let when = if values.is_empty() { "always".to_owned() } else { format!("when {}", values.join(", ")) };
+    let when = conditions::when(&values);
     let mut finding = sink
         .report(
             net.transition(later).site(),
@@ -62,7 +62,8 @@ fn divergence(
         )
         .label("this branch")
         .related_all(found.iter().map(|(it, _)| (net.transition(*it).site(), "and this one".to_owned())))
-        .related(net.step(step).site(), "the step that they leave");
+        .related(net.step(step).site(), "the step that they leave")
+        .notes(conditions::besides(&values));
     if witness.assumed {
         finding = finding.note("values that are compared with one another, or computed, were taken as free");
     }

@@ -2,7 +2,7 @@
 
 use crate::analysis::Site;
 use crate::analysis::calls;
-use crate::lint::{ProgramCx, Sink};
+use crate::lint::{ProgramCx, Severity, Sink};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for cycle in calls::cycles(cx.program) {
@@ -16,7 +16,8 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             before.iter().map(|it| (it.site(), format!("{} calls `{}`", cx.program.entity(it.unit), it.it.text)));
         let report = sink.report(last.site(), message).related_all(steps);
         if cycle.iter().any(|it| it.it.conditional) {
-            report.note("a condition may end the cycle; nothing limits it to the levels that the controller has");
+            let note = "a condition may end the cycle; nothing limits it to the levels that the controller has";
+            report.severity(Severity::Warning).note(note);
         }
     }
 }

@@ -22,6 +22,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 .label(format!("resets `{step}` before that branch is tested"))
                 .related(second.site(), format!("the branch to {left}, which the rules cross too (rule 4)"))
                 .note(format!("the branch to {taken} comes first in the scan; if it is to have priority, say so in the condition of the other one"))
+                .notes(found.besides())
                 .note(sequence.note(found.step));
         }
     }

@@ -20,6 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
                 .related_all(cx.sequences().set_of(sequence, found).map(|it| (it, format!("activates `{step}`"))))
                 .note(format!("the scan begins with {} active", sequence.names(&found.situation)))
                 .note("a step that is deactivated and activated at once stays active (rule 5)")
+                .notes(found.besides())
                 .note(sequence.note(found.step));
         }
     }

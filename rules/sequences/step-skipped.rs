@@ -27,6 +27,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             .related_all(cx.sequences().set_of(sequence, first).map(|it| (it, format!("switches `{step}` on"))))
             .related_all(others)
             .note(format!("the scan begins with {} active", sequence.names(&first.situation)))
+            .notes(first.besides())
             .note(sequence.note(first.step));
         if first.assumed {
             finding = finding.note("values that are compared with one another, or computed, were taken as free");

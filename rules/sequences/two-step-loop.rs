@@ -13,6 +13,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             sink.report(reset, message)
                 .label(format!("goes back in the scan that went on to `{step}`"))
                 .related_all(cx.sequences().set_of(sequence, found).map(|it| (it, format!("switches `{step}` on"))))
+                .notes(found.besides())
                 .note(sequence.note(found.step))
                 .note("let the two conditions exclude each other, or add a step, or keep the activities in two tables");
         }

@@ -7,6 +7,7 @@
 //!
 //! Charts that nothing connects are looked at apart. What is too large is said to be not decided.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -33,6 +34,9 @@ pub const MAX_CAUSES: usize = 32;
 
 /// Valid transitions are compared pair by pair: so many comparisons in all, hundreds of times what charts need.
 const MAX_COMPARISONS: usize = 20_000_000;
+
+/// What the questions of one exploration are made of, expressions counted once for each question: a second of a slow machine.
+const MAX_EFFORT: usize = 3_000_000;
 
 /// Of more transitions than this that depend on one another, only single ones and pairs are crossed.
 const MAX_TOGETHER: usize = 5;
@@ -94,6 +98,8 @@ pub struct Net<'p, 'a> {
     family: Family,
     /// Objects that a receptivity depends on, by groups of objects that share memory.
     supports: Vec<Vec<u32>>,
+    /// How many expressions each receptivity is made of.
+    weights: Vec<usize>,
     /// By node: the crossings that it is before, and those that it is behind.
     leaving: Vec<Vec<usize>>,
     entering: Vec<Vec<usize>>,
@@ -380,6 +386,7 @@ impl<'p, 'a> Net<'p, 'a> {
             objects: Vec::new(),
             family,
             supports: Vec::new(),
+            weights: Vec::new(),
             leaving: Vec::new(),
             entering: Vec::new(),
             steps_read: FxHashMap::default(),
@@ -531,6 +538,14 @@ impl<'p, 'a> Net<'p, 'a> {
             Guarded::Never | Guarded::Unknown => Vec::new(),
         };
         self.supports = self.crossings.iter().map(support).collect();
+        let weight = |it: &Crossing| {
+            let mut weight = 1;
+            if let Guarded::By(guard) = it.guard {
+                self.exprs.each_part(guard, |_| weight += 1);
+            }
+            weight
+        };
+        self.weights = self.crossings.iter().map(weight).collect();
     }
 
     fn find_presets(&mut self, program: &ProgramIndex<'a>) {
@@ -571,7 +586,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     /// Steps that transitions connect with one another, in the order of their first steps.
-    fn components(&mut self) -> Vec<Component> {
+    pub fn components(&mut self) -> Vec<Component> {
         let mut parent: Vec<u32> = (0..).take(self.nodes.len()).collect();
         fn root(parent: &mut [u32], mut at: u32) -> u32 {
             while parent[at as usize] != at {
@@ -663,7 +678,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     fn explore(&self, component: &Component, starts: &[Vec<Node>], apart: bool) -> Reached {
-        let walker = Walker { net: self, component, apart };
+        let walker = Walker { net: self, component, apart, effort: Cell::new(0) };
         let mut reached = Reached::default();
         let mut known: FxHashMap<Situation, u32> = FxHashMap::default();
         let mut lost: FxHashSet<(usize, Node)> = FxHashSet::default();
@@ -684,7 +699,7 @@ impl<'p, 'a> Net<'p, 'a> {
             let valid = walker.valid(&situation);
             valid.iter().for_each(|it| reached.valid_in.entry(*it).or_default().push(at));
             comparisons = comparisons.saturating_add(valid.len().saturating_mul(valid.len()));
-            if comparisons > MAX_COMPARISONS {
+            if comparisons > MAX_COMPARISONS || walker.effort.get() > MAX_EFFORT {
                 reached.is_partial = true;
                 return reached;
             }
@@ -765,7 +780,7 @@ impl<'p, 'a> Net<'p, 'a> {
             .collect();
         let Some(guards) = guards else { return Answer::Never };
         let crossings: Vec<usize> = wanted.iter().map(|it| it.0).collect();
-        let walker = Walker { net: self, component, apart: false };
+        let walker = Walker { net: self, component, apart: false, effort: Cell::new(0) };
         let mut asked = walker.asked(&crossings);
         asked.retain(|it| component.nodes.get(it.0).is_none_or(|it| !is_free(*it)));
         let mut seen: FxHashSet<Vec<bool>> = FxHashSet::default();
@@ -978,6 +993,8 @@ struct Walker<'n, 'p, 'a> {
     component: &'n Component,
     /// Branches of one step are not taken together.
     apart: bool,
+    /// What the questions so far were made of.
+    effort: Cell<usize>,
 }
 
 fn has(situation: &[u64], at: usize) -> bool {
@@ -1121,7 +1138,13 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
         };
         let mut left_out = !is_small;
         let mut sets: Vec<Vec<usize>> = Vec::new();
+        let weight: usize = group.iter().map(|it| self.net.weights[*it]).sum();
         for set in candidates {
+            let effort = self.effort.get().saturating_add(weight);
+            self.effort.set(effort);
+            if effort > MAX_EFFORT {
+                return (vec![Vec::new()], true);
+            }
             let guards = group.iter().filter_map(|it| match self.net.crossings[*it].guard {
                 Guarded::By(guard) => Some((guard, set.contains(it))),
                 Guarded::Never | Guarded::Unknown => None,

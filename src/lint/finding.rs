@@ -210,6 +210,11 @@ impl<P> Reported<'_, P> {
         self
     }
 
+    pub fn notes(self, texts: impl IntoIterator<Item = String>) -> Self {
+        self.0.notes.extend(texts);
+        self
+    }
+
     pub fn severity(self, severity: Severity) -> Self {
         self.0.severity = severity;
         self

@@ -77,6 +77,26 @@ pub struct Witness {
     pub assumed: bool,
 }
 
+/// What makes something happen, as a message says it: ``when `E0.1` = 1``. Of many values the first, and the number of the
+/// others, which [`besides`] tells.
+pub fn when(values: &[String]) -> String {
+    let (told, others) = values.split_at(values.len().min(MOST_TOLD));
+    match (told, others.len()) {
+        ([], _) => "always".to_owned(),
+        (_, 0) => format!("when {}", told.join(", ")),
+        (_, more) => format!("when {} and {more} more hold", told.join(", ")),
+    }
+}
+
+/// The values that [`when`] leaves out.
+pub fn besides(values: &[String]) -> Option<String> {
+    let others = values.get(MOST_TOLD..).filter(|it| !it.is_empty())?;
+    Some(format!("what has to hold besides: {}", others.join(", ")))
+}
+
+/// Of more values, the first are told in a message.
+const MOST_TOLD: usize = 6;
+
 #[derive(Debug, Clone, PartialEq)]
 pub enum Given {
     Bit(ObjectId, bool),

@@ -10,7 +10,7 @@ use super::code::How;
 use super::set_reset::FoundTransition;
 use super::trace::Trace;
 use super::{Sequence, SequenceTransition};
-use crate::analysis::conditions::{Answer, Given};
+use crate::analysis::conditions::{self, Answer, Given};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
 use crate::model::object::Class;
 
@@ -34,7 +34,12 @@ pub struct Deviation {
 impl Deviation {
     /// The values as a message says them: ``when `E0.1` = 1``.
     pub fn when(&self) -> String {
-        if self.values.is_empty() { "always".to_owned() } else { format!("when {}", self.values.join(", ")) }
+        conditions::when(&self.values)
+    }
+
+    /// Those that are too many for the message.
+    pub fn besides(&self) -> Option<String> {
+        conditions::besides(&self.values)
     }
 }
 
@@ -313,13 +318,13 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
 /// own, and what follows from it is none. Where nothing says how the sequence starts, its own steps alone.
 fn situations(trace: &Trace<'_>, sequence: &Sequence<'_>) -> Vec<Vec<Vec<usize>>> {
     let chart = sequence.chart();
-    let study = sequence.study(trace.family, &chart);
+    let mut net = sequence.net(trace.family, &chart);
     let mut valid: Vec<Vec<Vec<usize>>> = vec![Vec::new(); sequence.transitions.len()];
-    for part in &study.parts {
-        let reached = study.net.reach_apart(&part.component);
-        for &crossing in &part.component.crossings {
-            let Some(list) = valid.get_mut(study.net.crossings[crossing].transition) else { continue };
-            let all = study.net.valid_in(&part.component, &reached, crossing).take(MOST_SITUATIONS);
+    for component in net.components() {
+        let reached = net.reach_apart(&component);
+        for &crossing in &component.crossings {
+            let Some(list) = valid.get_mut(net.crossings[crossing].transition) else { continue };
+            let all = net.valid_in(&component, &reached, crossing).take(MOST_SITUATIONS);
             list.extend(all.map(|it| it.map(|it| it as usize).collect::<Vec<usize>>()));
         }
     }

@@ -219,11 +219,15 @@ impl<'a> Sequence<'a> {
         Chart::recovered(steps, transitions, self.has_gaps)
     }
 
-    /// What it reaches, as a chart.
-    pub fn study<'p>(&'p self, family: Family, chart: &'p Chart<'p>) -> Study<'p, 'p> {
+    fn net<'p>(&'p self, family: Family, chart: &'p Chart<'p>) -> Net<'p, 'p> {
         let ids: Vec<ObjectId> = self.steps.iter().map(|it| it.id).collect();
         let objects: Vec<&'p Object> = self.objects.to_vec();
-        Study::new(Net::recovered(family, chart, objects, &ids, self.starts.clone()))
+        Net::recovered(family, chart, objects, &ids, self.starts.clone())
+    }
+
+    /// What it reaches, as a chart.
+    pub fn study<'p>(&'p self, family: Family, chart: &'p Chart<'p>) -> Study<'p, 'p> {
+        Study::new(self.net(family, chart))
     }
 
     pub fn name(&self, step: usize) -> &str {

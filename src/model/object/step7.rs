@@ -44,6 +44,34 @@ pub fn parse_either(operand: &str) -> Result<Object, AddressError> {
     german.or_else(|error| parse(operand, Mnemonics::English).map_err(|_| error))
 }
 
+/// A symbol, or a field of a block by its symbol, that stands without quotation marks: with them. Sources may leave them out
+/// where a symbol has the form of a name. `None` for what has the form of an address, or is one that lacks its number.
+pub fn quoted(text: &str, mnemonics: Mnemonics) -> Option<String> {
+    /// What the letters of addresses and constants begin with, in either mnemonic set, and in STEP 5.
+    const ADDRESSED: &[u8] = b"EAIQMLTZCPDFSOUK";
+    let end = text.find(['.', '[']).unwrap_or(text.len());
+    let (head, rest) = text.split_at(end);
+    let is_start = |it: char| it.is_alphabetic() || it == '_';
+    let is_word = |it: &str| it.starts_with(is_start) && it.chars().all(|it| it.is_alphanumeric() || it == '_');
+    let fields = rest.split(['.', '[']).skip(1).zip(rest.chars().filter(|it| matches!(it, '.' | '[')));
+    let is_field = |(it, by): (&str, char)| match by {
+        '.' => is_word(it),
+        _ => it.ends_with(']') && it.bytes().all(|it| it.is_ascii_digit() || matches!(it, b',' | b'-' | b']')),
+    };
+    if !is_word(head) || !fields.into_iter().all(is_field) {
+        return None;
+    }
+    let letters = head.bytes().take_while(u8::is_ascii_alphabetic).count();
+    let digits = head.as_bytes().get(letters..).unwrap_or_default();
+    let is_address = rest.is_empty()
+        && letters <= 4
+        && !digits.is_empty()
+        && digits.iter().all(u8::is_ascii_digit)
+        && head.bytes().next().is_some_and(|it| ADDRESSED.contains(&it.to_ascii_uppercase()));
+    let lacks_number = || ["0", "0.0"].iter().any(|it| parse(&format!("{text}{it}"), mnemonics).is_ok());
+    (!is_address && !lacks_number()).then(|| format!("\"{head}\"{rest}"))
+}
+
 /// How an operand of the other mnemonic set is written in this one; `None` when it is written the same.
 pub fn translated(operand: &str, mnemonics: Mnemonics) -> Option<String> {
     let end = operand.bytes().position(|it| !it.is_ascii_alphabetic()).unwrap_or(operand.len());
@@ -540,6 +568,32 @@ mod tests {
                 assert_eq!(object.text, operand.replace(' ', ""));
                 assert!(object.is_fixed());
             }
+        }
+    }
+
+    #[test]
+    fn symbols_without_quotes() {
+        for (text, expected) in [
+            ("GCS7_GrCtrlDB.Section[1].DBNr", Some("\"GCS7_GrCtrlDB\".Section[1].DBNr")),
+            ("A408Z1O1.StStopped", Some("\"A408Z1O1\".StStopped")),
+            ("Data[1,-2].x", Some("\"Data\"[1,-2].x")),
+            ("Antrieb_links", Some("\"Antrieb_links\"")),
+            ("V12", Some("\"V12\"")),
+            ("MAL1.Para.x", Some("\"MAL1\".Para.x")),
+            ("Störung", Some("\"Störung\"")),
+            // Slips in addresses.
+            ("MX12", None),
+            ("EX0.0", None),
+            ("V12.0", None),
+            ("MW", None),
+            ("DB", None),
+            ("M_1.0", None),
+            ("Data[i].x", None),
+            ("Data.", None),
+            ("", None),
+            ("[1]", None),
+        ] {
+            assert_eq!(quoted(text, Mnemonics::German).as_deref(), expected, "{text}");
         }
     }
 

@@ -14,7 +14,7 @@ use crate::model::object::{self, Class};
 use crate::model::unit::{Argument, Call, Callee, Formal, Mode, OddityKind, Passed, StatementKind};
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::Op;
-use crate::syntax::{AstNode as _, SyntaxKind, SyntaxNode};
+use crate::syntax::{AstNode as _, Mnemonics, SyntaxKind, SyntaxNode};
 
 /// What is known of the data block registers.
 #[derive(Debug, Clone, Default)]
@@ -217,9 +217,10 @@ pub(super) fn points_to_area(text: &str) -> bool {
     pointer.is_some_and(|it| it.starts_with(|it: char| it.is_ascii_alphabetic()))
 }
 
-/// `FC1`, `DB 5`, `"Motor"`: a block's name. SFC and SFB included.
+/// `FC1`, `DB 5`, `"Motor"`, `Motor`: a block's name. SFC and SFB included.
 pub(super) fn block_name(text: &str) -> Option<BlockName> {
-    if text.starts_with(['"', '«']) {
+    let is_bare = || object::step7::quoted(text, Mnemonics::German).is_some_and(|it| it.ends_with('"'));
+    if text.starts_with(['"', '«']) || is_bare() {
         let bare = text.trim_matches(['"', '«', '»', ' ', '\u{a0}']);
         return Some(BlockName::Symbol(bare.to_lowercase().into()));
     }

@@ -12,7 +12,7 @@ use crate::model::lower::interface;
 use crate::model::object::{self, Class, Footprint, Object, Rights, Type};
 use crate::model::unit::{Constant, OddityKind, Section};
 use crate::syntax::awl::ast;
-use crate::syntax::{AstNode as _, Language, Mnemonics, SyntaxKind, SyntaxNode};
+use crate::syntax::{AstNode as _, Language, SyntaxKind, SyntaxNode};
 
 #[derive(Debug, Clone)]
 pub(super) enum Operand {
@@ -205,10 +205,14 @@ impl Machine {
                 self.b.model.of_tia_portal |= text.starts_with('%');
                 Ok(self.b.object(object))
             }
-            Err(error) if error.suggestion.is_none() && is_bare_symbol(text, mnemonics) => {
-                Ok(self.b.object(Object::symbol(text)))
-            }
-            Err(error) => Err(self.no_address(text, error, range)),
+            Err(error) => match object::step7::quoted(text, mnemonics).filter(|_| error.suggestion.is_none()) {
+                Some(quoted) if text.contains('.') => match object::step7::parse(&quoted, mnemonics) {
+                    Ok(object) => Ok(self.b.object(Object { text: text.into(), ..object })),
+                    Err(error) => Err(self.no_address(text, error, range)),
+                },
+                Some(_) => Ok(self.b.object(Object::symbol(text))),
+                None => Err(self.no_address(text, error, range)),
+            },
         }
     }
 
@@ -247,13 +251,14 @@ impl Machine {
 
     /// Records a read of a bit or word.
     pub(super) fn read(&mut self, object: ObjectId, range: TextRange) -> ExprId {
-        let indirect = self.b.model.objects[object.0 as usize].class == Class::Indirect;
-        self.b.model.reads_indirectly |= indirect;
-        if indirect {
-            self.b.read(object, range);
-            return self.b.exprs().opaque();
+        let class = self.b.model.objects[object.0 as usize].class;
+        self.b.model.reads_indirectly |= class == Class::Indirect;
+        let read = self.b.read(object, range);
+        // The status, and the number of the open data block, are others after each instruction.
+        match class {
+            Class::Indirect | Class::Status => self.b.exprs().opaque(),
+            _ => read,
         }
-        self.b.read(object, range)
     }
 
     pub(super) fn note_write(&mut self, object: ObjectId) {
@@ -262,16 +267,6 @@ impl Machine {
             self.b.wipe();
         }
     }
-}
-
-/// Whether a word that is no address may be a symbol without its quotes: it has not the form of one, letters and a
-/// number, and a number is not all that it lacks.
-pub(super) fn is_bare_symbol(text: &str, mnemonics: Mnemonics) -> bool {
-    let letters = text.bytes().take_while(u8::is_ascii_alphabetic).count();
-    let numbered = letters <= 4 && text.as_bytes().get(letters).is_some_and(u8::is_ascii_digit);
-    let is_word = text.chars().all(|it| it.is_alphanumeric() || matches!(it, '_' | '.'));
-    let lacks_number = || ["0", "0.0"].iter().any(|it| object::step7::parse(&format!("{text}{it}"), mnemonics).is_ok());
-    is_word && !numbered && !lacks_number()
 }
 
 /// The type that the spelling of a constant tells, `None` within where it tells none; `None` for what is no constant.
