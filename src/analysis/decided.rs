@@ -102,6 +102,9 @@ pub fn decided(model: &UnitModel) -> Vec<Decided> {
 /// Reads of a condition that are known to give a constant: the value, and the place that stores it.
 fn stored(model: &UnitModel, known: &Known<'_>, condition: ExprId, path: ExprId) -> Vec<(ExprId, i64, u32)> {
     let mut found = Vec::new();
+    if known.is_empty() {
+        return found;
+    }
     model.exprs.each_read(condition, |read| {
         if let Some(it) = known.value(read, path)
             && let Some(anchor) = it.stored

@@ -176,6 +176,9 @@ impl<'a> Space<'a> {
         }
         let (mut all, mut parts, mut with_part) = (Vec::new(), Vec::new(), Vec::new());
         given.iter().for_each(|it| spread(self.exprs, *it, &mut all));
+        if pairs.is_empty() {
+            return self.by_form(&mut all);
+        }
         let held = all.len();
         let mut is_free = true;
         for pair in pairs {
@@ -207,6 +210,9 @@ impl<'a> Space<'a> {
 
     /// Whether a condition is always true, always false, or neither, wherever another one holds.
     pub fn constant(&self, given: ExprId, condition: ExprId) -> Option<bool> {
+        if given == Exprs::TRUE && self.is_bit(condition) {
+            return None;
+        }
         if self.exclusive(given, condition) { Some(false) } else { self.implies(given, condition).then_some(true) }
     }
 
@@ -282,6 +288,12 @@ impl<'a> Space<'a> {
             })
         };
         terms.windows(2).all(|it| it[0] != it[1]) && !terms.iter().any(is_part)
+    }
+
+    /// Whether a condition asks one bit, and nothing else.
+    fn is_bit(&self, condition: ExprId) -> bool {
+        let atom = if let Expr::Not(inner) = *self.exprs.get(condition) { inner } else { condition };
+        matches!(*self.exprs.get(atom), Expr::Read { .. })
     }
 
     /// Whether a condition asks a step time for what it never is, or always is.
