@@ -270,7 +270,10 @@ impl<'a> Walk<'a> {
         self.each(access.object, |walk, at| {
             let waiting = &mut walk.waiting[at];
             let written = &walk.model.object(waiting.access.object).footprint;
-            if !walk.model.object(access.object).footprint.contains(written) || waiting.in_loop != in_loop || waiting.by.len() >= MOST_WAITING {
+            if !walk.model.object(access.object).footprint.contains(written)
+                || waiting.in_loop != in_loop
+                || waiting.by.len() >= MOST_WAITING
+            {
                 return;
             }
             waiting.overridden.push([path, when]);

@@ -566,7 +566,17 @@ impl Settings {
         }
         let source = ConfigSource::new(text.text, path);
         let active = active(&base, &per_file);
-        Ok(Self(Arc::new(Inner { folders, source, file, overrides, base, per_file, active, entities, encoding: forced })))
+        Ok(Self(Arc::new(Inner {
+            folders,
+            source,
+            file,
+            overrides,
+            base,
+            per_file,
+            active,
+            entities,
+            encoding: forced,
+        })))
     }
 
     /// The file that the settings are from; its text is empty when there is none.

@@ -509,7 +509,8 @@ fn has_pl7_2_object(line: &str, signs: Signs) -> bool {
     };
     let mut words = line.split(|it| !is_part(it)).filter(has_form);
     let mut is_named = || words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault));
-    let has_arrow = || signs.has(Signs::GREATER) && memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
+    let has_arrow =
+        || signs.has(Signs::GREATER) && memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
     let is_transfer = || line.contains("END_BLOCK") && !line.contains(":=");
     let address = || {
         let at = memchr::memchr_iter(b'A', bytes).find(|&at| at > 0 && bytes[at - 1..].starts_with(b" AT "))?;
