@@ -229,7 +229,7 @@ pub fn analysis<'db>(db: &'db dyn Db, unit: Unit<'db>) -> UnitAnalysis {
     let target = settings.target_or(family, *named_controller(db, unit.file(db)));
     let cx = UnitCx::new(&model, &tree, text, settings, &target);
     let findings = run_rules(settings, |rule, findings| match rule.check {
-        Check::Unit(check) if rule.is_for_unit(language, unit.entity(db)) => {
+        Check::Unit(check) if rule.is_for_unit(language, &model.entity) => {
             crate::lint::run(rule, findings, |sink| check(&cx, sink));
         }
         _ => {}
@@ -625,7 +625,7 @@ pub struct Ran<F> {
 /// cancellation passes through here.
 fn run_rules<P>(settings: &Settings, mut run: impl FnMut(&'static Rule, &mut Vec<Finding<P>>)) -> Ran<Finding<P>> {
     let mut ran = Ran { findings: Vec::new(), failed: Vec::new() };
-    for rule in settings.active() {
+    for &rule in settings.active() {
         let before = ran.findings.len();
         if catch_unwind(AssertUnwindSafe(|| run(rule, &mut ran.findings))).is_err() {
             ran.findings.truncate(before);
@@ -1050,7 +1050,7 @@ pub fn check(inputs: Vec<Input>, settings: Settings) -> Outcome {
 /// The same of files beside others that were left out: `unread`.
 pub fn check_beside(inputs: Vec<Input>, unread: Vec<Unread>, settings: Settings) -> Outcome {
     let start = Instant::now();
-    let active = settings.active();
+    let active = settings.active().to_vec();
     let Opened { db, files, encodings, unread } = open(inputs, unread, settings);
     let mut outcome = Outcome { active, unread, ..Outcome::default() };
     let mut found: Vec<Vec<FileFinding>> =

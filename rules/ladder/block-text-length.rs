@@ -10,6 +10,10 @@ use crate::target::pl7::BLOCK_TEXT;
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for cell in cx.nodes(SyntaxKind::Cell).filter_map(Cell::cast) {
+        // Most cells are shorter than any text that is too long.
+        if u32::from(cell.range().len()) <= BLOCK_TEXT.value {
+            continue;
+        }
         if !matches!(cell.element(), Some(Element::Compare | Element::Operate)) {
             continue;
         }

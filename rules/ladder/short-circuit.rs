@@ -29,7 +29,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         if matches!(power, Exprs::TRUE | Exprs::FALSE) || std::mem::replace(&mut before, this) == this {
             continue;
         }
-        if space.constant(Exprs::TRUE, power) == Some(true) && rungs.iter().any(|rung| rung.contains_range(it.range)) {
+        if space.implies(Exprs::TRUE, power) && rungs.iter().any(|rung| rung.contains_range(it.range)) {
             sink.report(it.range, "the tests before this coil let power through whatever they find");
         }
     }

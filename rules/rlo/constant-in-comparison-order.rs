@@ -8,21 +8,18 @@ use crate::lint::{Sink, UnitCx};
 use crate::model::expr::Comparison;
 use crate::syntax::awl::ast::{Instr, Network};
 use crate::syntax::awl::instruction::{Op, Relation};
-use crate::syntax::{AstNode as _, Language, SyntaxKind};
+use crate::syntax::{AstNode as _, Language, SyntaxKind, SyntaxNode};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let Language::Awl(mnemonics) = cx.model.language else { return };
-    let comments: Vec<TextRange> = cx
-        .parse
-        .syntax()
-        .descendant_tokens()
-        .filter(|it| matches!(it.kind(), SyntaxKind::Comment))
-        .map(|it| it.text_range())
-        .collect();
+    let comments = cx.comments();
     if comments.is_empty() {
         return;
     }
-    for network in cx.nodes(SyntaxKind::Network).filter_map(Network::cast) {
+    // Most networks compare nothing.
+    let may_compare =
+        |it: &SyntaxNode<'_>| memchr::memchr2(b'<', b'>', cx.text_of(it.text_range()).as_bytes()).is_some();
+    for network in cx.nodes(SyntaxKind::Network).filter(may_compare).filter_map(Network::cast) {
         let instrs: Vec<Instr<'_>> = network.instrs().collect();
         for (at, window) in instrs.windows(3).enumerate() {
             let &[first, second, comparison] = window else { continue };
@@ -40,7 +37,7 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
             });
             let beside: &[Instr<'_>] = if is_turned { &[comparison] } else { &[first, second, comparison] };
             let stating: Vec<(TextRange, Comparison)> =
-                near(cx.text, &comments, first.range().cover(comparison.range()))
+                near(cx.text, comments, first.range().cover(comparison.range()))
                     .iter()
                     .filter(|it| beside.iter().any(|instr| is_beside(cx.text, instr.range(), **it)))
                     .filter_map(|it| Some((*it, stated(cx.text_of(*it), a, b)?)))

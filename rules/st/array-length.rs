@@ -7,7 +7,7 @@ use crate::model::object::Type;
 use crate::model::pl7_tables::{self, Misfit};
 use crate::model::unit::Mode;
 use crate::syntax::pl7::ast::{AssignStmt, BinExpr, CallExpr};
-use crate::syntax::{AstNode, SyntaxKind};
+use crate::syntax::{AstNode, SyntaxKind, SyntaxNode};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let is_awl = cx.model.language.is_statement_list();
@@ -32,7 +32,8 @@ fn meet<'a, N: AstNode<'a>>(
     kind: SyntaxKind,
     operands: impl Fn(N) -> Option<(Type, Type)>,
 ) {
-    for node in cx.nodes(kind).filter_map(N::cast) {
+    let may_have_table = |it: &SyntaxNode<'_>| names_length(cx.text_of(it.text_range()));
+    for node in cx.nodes(kind).filter(may_have_table).filter_map(N::cast) {
         let place = node.syntax().text_range();
         let Some((a, b)) = operands(node) else { continue };
         match pl7_tables::misfit(a, b) {
@@ -51,4 +52,10 @@ fn meet<'a, N: AstNode<'a>>(
             None => {}
         }
     }
+}
+
+/// Whether a colon stands in a text that is none of `:=`: the length of a table is behind one.
+fn names_length(text: &str) -> bool {
+    let text = text.as_bytes();
+    memchr::memchr_iter(b':', text).any(|at| text.get(at + 1) != Some(&b'='))
 }

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::analysis::decided;
 use crate::lint::{Sink, UnitCx};
 use crate::syntax::pl7::ast::{IfStmt, Stmt};
-use crate::syntax::{SyntaxKind, SyntaxNode};
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let place = |at: u32| cx.model.statements.get(at as usize).map(|it| it.range);
@@ -32,20 +32,28 @@ fn makes_no_difference(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>, statemen
     let Some((body, other)) = last.body().zip(statement.else_arm().and_then(|it| it.body())) else { return };
     let Some(place) = last.condition().map(|it| it.syntax().text_range()) else { return };
     let is_empty = body.statements().all(|it| matches!(it, Stmt::Empty(_)));
-    if !is_empty && tokens(body.syntax()).eq(tokens(other.syntax())) {
+    if !is_empty && are_alike(body.syntax(), other.syntax()) {
         sink.report(place, format!("the condition `{}` makes no difference", one_line(cx, place)))
             .related(body.syntax().text_range(), "what is done when it is true")
             .related(other.syntax().text_range(), "is done by `ELSE` too");
     }
 }
 
-/// The tokens of a piece of program as PL7 reads them: no blanks, no comments, names in one case.
-fn tokens(node: SyntaxNode<'_>) -> impl Iterator<Item = String> {
-    let tokens = node.descendant_tokens();
-    tokens.filter(|it| !it.kind().is_trivia()).map(|it| match it.kind() {
-        SyntaxKind::CharString => it.text().to_owned(),
-        _ => it.text().to_uppercase(),
-    })
+/// Whether PL7 reads two pieces of program as the same: blanks, comments and the case of names mean nothing.
+fn are_alike(a: SyntaxNode<'_>, b: SyntaxNode<'_>) -> bool {
+    fn upper(text: &str) -> impl Iterator<Item = char> {
+        text.chars().flat_map(char::to_uppercase)
+    }
+    let is_same = |a: SyntaxToken<'_>, b: SyntaxToken<'_>| {
+        a.text() == b.text() || a.kind() != SyntaxKind::CharString && upper(a.text()).eq(upper(b.text()))
+    };
+    let [mut a, mut b] = [a, b].map(|it| it.descendant_tokens().filter(|it| !it.kind().is_trivia()));
+    loop {
+        match (a.next(), b.next()) {
+            (Some(a), Some(b)) if is_same(a, b) => {}
+            (a, b) => return a.is_none() && b.is_none(),
+        }
+    }
 }
 
 fn one_line(cx: &UnitCx<'_>, place: TextRange) -> String {

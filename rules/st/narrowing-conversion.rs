@@ -17,10 +17,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let mut candidates = assignments.filter_map(|it| {
         let (target, value) = (it.target()?, it.value()?);
         let is_word = cx.kinds().type_of(target) == Some(Type::Word);
-        let kind = cx.kinds().of(value);
-        let is_wide = is_word && matches!(kind, Kind::Double | Kind::Integer);
-        let places = [it.syntax(), target.syntax(), value.syntax()].map(|it| it.text_range());
-        is_wide.then_some((kind, places))
+        let kind = is_word.then(|| cx.kinds().of(value)).filter(|it| matches!(it, Kind::Double | Kind::Integer))?;
+        Some((kind, [it.syntax(), target.syntax(), value.syntax()].map(|it| it.text_range())))
     });
     let Some(first) = candidates.next() else { return };
     let model = cx.model;

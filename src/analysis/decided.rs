@@ -1,7 +1,7 @@
 //! Conditions of a unit that are always true, or never, where the program asks them.
 
 use rowan::TextRange;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use super::conditions::{Space, Verdict};
 use super::known::Known;
@@ -57,15 +57,17 @@ pub fn decided(model: &UnitModel) -> Vec<Decided> {
     let space = Space::of(model);
     let mut paths = Paths::default();
     // What a condition tests, its statement reads, also where its form alone made it a constant.
-    let mut tests: FxHashSet<u32> = FxHashSet::default();
-    tests.extend(model.accesses.iter().filter(|it| it.mode.reads()).map(|it| it.statement));
+    let mut reads = model.accesses.iter().filter(|it| it.mode.reads()).map(|it| it.statement).peekable();
     let mut found = Vec::new();
     for (at, statement) in (0..).zip(&model.statements) {
+        // Accesses stand in the order of their statements.
+        while reads.next_if(|it| *it < at).is_some() {}
+        let tests = reads.peek() == Some(&at);
         let Some(condition) = asked(model, statement) else { continue };
         let is_branch = matches!(statement.kind, StatementKind::Branch { .. });
         let is_written = match condition {
-            Exprs::TRUE => !is_branch || !tests.contains(&at),
-            Exprs::FALSE => !tests.contains(&at),
+            Exprs::TRUE => !is_branch || !tests,
+            Exprs::FALSE => !tests,
             _ => false,
         };
         if is_written || paths.is_closed(&space, statement.path) {
@@ -100,6 +102,9 @@ pub fn decided(model: &UnitModel) -> Vec<Decided> {
 /// Reads of a condition that are known to give a constant: the value, and the place that stores it.
 fn stored(model: &UnitModel, known: &Known<'_>, condition: ExprId, path: ExprId) -> Vec<(ExprId, i64, u32)> {
     let mut found = Vec::new();
+    if known.is_empty() {
+        return found;
+    }
     model.exprs.each_read(condition, |read| {
         if let Some(it) = known.value(read, path)
             && let Some(anchor) = it.stored

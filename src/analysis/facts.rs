@@ -13,6 +13,7 @@ use super::conditions::{Space, Verdict};
 use super::cost::UnitCost;
 use super::gaps;
 use super::liveness::{self, Lost};
+use super::ranges::Ranges;
 use super::ranges::demands::{self, Demanded};
 use super::repeats::Forms;
 use super::sequences::code::CodeFacts;
@@ -244,6 +245,7 @@ impl UnitFacts {
         let groups = groups(model, &given);
         let writes = gaps::writes(model);
         let (skips, exits) = (gaps::skips(model), gaps::exits(model));
+        let ranges = Ranges::new(model);
         let uses = model
             .accesses
             .iter()
@@ -327,8 +329,8 @@ impl UnitFacts {
             condition: None,
             commented: false,
             cost: UnitCost::new(model),
-            demands: demands::of_unit(model),
-            loops: turns::loops(model),
+            demands: demands::of_unit(&ranges),
+            loops: turns::loops(&ranges),
             code: CodeFacts::new(model),
             lost: liveness::lost(model),
             forms: None,
@@ -402,14 +404,18 @@ fn is_own_value(model: &UnitModel, value: ExprId, object: ObjectId) -> bool {
 /// Whether a condition or value reads the object, looking at its first terms.
 fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
     const MAX_TERMS: usize = 128;
-    let mut stack = vec![value];
+    let mut rest = Vec::new();
+    let mut next = Some(value);
     for _ in 0..MAX_TERMS {
-        match stack.pop().map(|it| exprs.get(it)) {
-            None => return false,
-            Some(Expr::Read { object: read, .. }) if *read == object => return true,
-            Some(Expr::Not(a) | Expr::Negate(a)) => stack.push(*a),
-            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) | Expr::Binary(_, a, b)) => stack.extend([*a, *b]),
-            Some(_) => {}
+        let Some(id) = next.take().or_else(|| rest.pop()) else { return false };
+        match *exprs.get(id) {
+            Expr::Read { object: read, .. } if read == object => return true,
+            Expr::Not(a) | Expr::Negate(a) => next = Some(a),
+            Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) | Expr::Binary(_, a, b) => {
+                rest.push(a);
+                next = Some(b);
+            }
+            _ => {}
         }
     }
     false
@@ -418,13 +424,14 @@ fn depends_on(exprs: &Exprs, value: ExprId, object: ObjectId) -> bool {
 /// Whether a value is made of inputs, outputs and memory bits alone, and of few of them.
 fn is_of_bits(model: &UnitModel, value: ExprId) -> bool {
     const MAX_TERMS: usize = 128;
-    let mut stack = vec![value];
+    let mut rest = Vec::new();
+    let mut next = Some(value);
     let mut reads = false;
     for _ in 0..MAX_TERMS {
-        match stack.pop().map(|it| model.exprs.get(it)) {
-            None => return reads,
-            Some(Expr::Read { object, .. }) => {
-                let object = model.object(*object);
+        let Some(id) = next.take().or_else(|| rest.pop()) else { return reads };
+        match *model.exprs.get(id) {
+            Expr::Read { object, .. } => {
+                let object = model.object(object);
                 let is_bit = match object.class {
                     Class::Input | Class::Output | Class::Memory => object.ty == Type::Bool,
                     // An item of a block may be a timer's output.
@@ -436,9 +443,12 @@ fn is_of_bits(model: &UnitModel, value: ExprId) -> bool {
                 }
                 reads = true;
             }
-            Some(Expr::Not(a)) => stack.push(*a),
-            Some(Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b)) => stack.extend([*a, *b]),
-            Some(_) => return false,
+            Expr::Not(a) => next = Some(a),
+            Expr::And(a, b) | Expr::Or(a, b) | Expr::Xor(a, b) => {
+                rest.push(a);
+                next = Some(b);
+            }
+            _ => return false,
         }
     }
     false
@@ -498,17 +508,21 @@ fn set(list: &mut [Option<ExprId>], access: u32, it: ExprId) {
 
 /// Accesses of some sort, those of one object together and in order; objects with one alone are left out.
 fn by_object(model: &UnitModel, wanted: impl Fn(&Access) -> bool) -> Vec<(u32, &Access)> {
-    let mut list: Vec<(u32, &Access)> = (0..).zip(&model.accesses).filter(|it| wanted(it.1)).collect();
+    #[derive(Clone, Copy, PartialEq)]
+    enum Count {
+        None,
+        One,
+        More,
+    }
+    // Most objects are alone.
+    let mut counts = vec![Count::None; model.objects.len()];
+    for it in model.accesses.iter().filter(|it| wanted(it)) {
+        let count = &mut counts[it.object.0 as usize];
+        *count = if *count == Count::None { Count::One } else { Count::More };
+    }
+    let is_one_of_more = |it: &(u32, &Access)| counts[it.1.object.0 as usize] == Count::More && wanted(it.1);
+    let mut list: Vec<(u32, &Access)> = (0..).zip(&model.accesses).filter(is_one_of_more).collect();
     list.sort_by_key(|it| it.1.object);
-    let is_alone: Vec<bool> = (0..list.len())
-        .map(|at| {
-            let object = |at: Option<usize>| at.and_then(|it| list.get(it)).map(|it| it.1.object);
-            let own = object(Some(at));
-            object(at.checked_sub(1)) != own && object(Some(at + 1)) != own
-        })
-        .collect();
-    let mut is_alone = is_alone.into_iter();
-    list.retain(|_| is_alone.next() == Some(false));
     list
 }
 

@@ -37,6 +37,10 @@ impl<'m> Known<'m> {
         Self { model, stores: stores.collect() }
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.stores.is_empty()
+    }
+
     /// The value of an expression that is looked at under a path: a constant, or the read of what holds one. The store counts
     /// when control is sure to have come by.
     pub fn value(&self, expr: ExprId, path: ExprId) -> Option<Value> {

@@ -17,7 +17,7 @@ use super::conditions::{Space, Verdict};
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::UnitModel;
 use crate::model::dfb::Role;
-use crate::model::expr::{Expr, ExprId, Exprs};
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Class, Footprint, Object, Type};
 use crate::model::unit::{Access, Mode, Statement, StatementKind};
 use crate::syntax::Language;
@@ -49,8 +49,15 @@ pub fn lost(model: &UnitModel) -> Vec<Lost> {
     if model.has_gaps || model.language == Language::Pl7Xref {
         return Vec::new();
     }
-    let mut walk =
-        Walk { model, space: Space::of(model), waiting: Vec::new(), areas: FxHashMap::default(), found: Vec::new() };
+    let mut walk = Walk {
+        model,
+        space: Space::of(model),
+        waiting: Vec::new(),
+        areas: Areas::new(model),
+        lists: Lists::default(),
+        met: Vec::new(),
+        found: Vec::new(),
+    };
     let mut part = None;
     let mut accesses = model.accesses.iter().peekable();
     for (at, statement) in (0..).zip(&model.statements) {
@@ -59,13 +66,13 @@ pub fn lost(model: &UnitModel) -> Vec<Lost> {
             let chart = model.chart.as_deref();
             let here = chart.and_then(|it| it.action_at(access.anchor)).map(|it| it.anchors.start);
             if chart.is_some() && (here != part || here.is_none()) {
-                walk.areas.clear();
+                walk.lists.clear();
                 part = here;
             }
             walk.access(access, statement);
         }
         if acts_on_anything(model, statement) {
-            walk.areas.clear();
+            walk.lists.clear();
         }
     }
     walk.found
@@ -99,9 +106,91 @@ struct Walk<'a> {
     model: &'a UnitModel,
     space: Space<'a>,
     waiting: Vec<Waiting<'a>>,
-    /// By granule, indices of what waits. A list may hold some that wait no more.
-    areas: FxHashMap<&'a Area, FxHashMap<u32, Vec<u32>>>,
+    areas: Areas<'a>,
+    lists: Lists,
+    /// What shares memory with the place that is looked at.
+    met: Vec<u32>,
     found: Vec<Lost>,
+}
+
+/// The areas that the objects of a unit lie in, numbered: areas hold names, and each place asks for them.
+struct Areas<'a> {
+    all: Vec<&'a Area>,
+    /// Of each object.
+    of: Vec<u32>,
+}
+
+impl<'a> Areas<'a> {
+    fn new(model: &'a UnitModel) -> Self {
+        let mut known: FxHashMap<&Area, u32> = FxHashMap::default();
+        let (mut all, mut of) = (Vec::new(), Vec::with_capacity(model.objects.len()));
+        for object in &model.objects {
+            let area = &object.footprint.area;
+            let number = *known.entry(area).or_insert(u32::try_from(all.len()).unwrap_or(u32::MAX));
+            if number as usize == all.len() {
+                all.push(area);
+            }
+            of.push(number);
+        }
+        Self { all, of }
+    }
+
+    fn of(&self, object: ObjectId) -> u32 {
+        self.of.get(object.0 as usize).copied().unwrap_or(u32::MAX)
+    }
+
+    fn those(&self, wanted: impl Fn(&Area) -> bool) -> impl Iterator<Item = u32> {
+        (0..).zip(&self.all).filter(move |it| wanted(it.1)).map(|it| it.0)
+    }
+}
+
+/// Indices of what waits, by area and granule. A list may hold some that wait no more.
+#[derive(Default)]
+struct Lists {
+    lists: FxHashMap<(u32, u32), List>,
+    /// Counts what was cleared. A list from before its area was cleared is empty.
+    now: u32,
+    /// When all areas were cleared, and when each of some was.
+    all: u32,
+    areas: FxHashMap<u32, u32>,
+}
+
+#[derive(Default)]
+struct List {
+    since: u32,
+    waiting: Vec<u32>,
+}
+
+impl Lists {
+    fn clear(&mut self) {
+        self.now += 1;
+        self.all = self.now;
+    }
+
+    fn clear_area(&mut self, area: u32) {
+        self.now += 1;
+        self.areas.insert(area, self.now);
+    }
+
+    /// When an area was cleared last.
+    fn cleared(&self, area: u32) -> u32 {
+        self.areas.get(&area).map_or(self.all, |it| self.all.max(*it))
+    }
+
+    fn get(&self, area: u32, granule: u32) -> &[u32] {
+        let list = self.lists.get(&(area, granule)).filter(|it| it.since >= self.cleared(area));
+        list.map_or(&[], |it| &it.waiting)
+    }
+
+    fn list(&mut self, area: u32, granule: u32) -> &mut Vec<u32> {
+        let (now, cleared) = (self.now, self.cleared(area));
+        let list = self.lists.entry((area, granule)).or_default();
+        if list.since < cleared {
+            list.since = now;
+            list.waiting.clear();
+        }
+        &mut list.waiting
+    }
 }
 
 impl<'a> Walk<'a> {
@@ -122,7 +211,7 @@ impl<'a> Walk<'a> {
                 (None, when)
             }
             _ => {
-                self.read(object, access);
+                self.read(access);
                 return;
             }
         };
@@ -130,19 +219,10 @@ impl<'a> Walk<'a> {
             // It may be any of them, and writes all of none.
             return;
         }
-        self.write(object, access, statement, value, when);
+        self.write(access, statement, value, when);
         if let Some(value) = value.filter(|_| self.can_be_lost(object)) {
-            self.wait(
-                object,
-                Waiting {
-                    access,
-                    value,
-                    in_loop: statement.in_loop,
-                    overridden: Vec::new(),
-                    by: Vec::new(),
-                    open: true,
-                },
-            );
+            let (overridden, by) = (Vec::new(), Vec::new());
+            self.wait(Waiting { access, value, in_loop: statement.in_loop, overridden, by, open: true });
         }
     }
 
@@ -151,24 +231,25 @@ impl<'a> Walk<'a> {
     }
 
     /// Something may look at the object.
-    fn read(&mut self, object: &'a Object, access: &Access) {
+    fn read(&mut self, access: &Access) {
+        let object = self.model.object(access.object);
         match &object.footprint.area {
-            Area::Indirect => self.areas.clear(),
-            _ if !object.is_fixed() && object.class == Class::Symbol => self.areas.clear(),
+            Area::Indirect => self.lists.clear(),
+            _ if !object.is_fixed() && object.class == Class::Symbol => self.lists.clear(),
             // Where the parts of a symbol lie is not known, nor how large it is.
             area if !object.is_fixed() || matches!(area, Area::Symbol(_)) || granules(&object.footprint).is_none() => {
-                self.areas.remove(area);
+                self.lists.clear_area(self.areas.of(access.object));
             }
             area => {
                 // Which block is open, and whose instance this is, is not known.
                 if matches!(area, Area::OpenData | Area::OpenInstance) {
-                    self.areas.retain(|it, _| !matches!(it, Area::Data(_)));
+                    self.clear_areas(|it| matches!(it, Area::Data(_)));
                 }
                 if matches!(area, Area::OpenData | Area::Data(_)) {
-                    self.areas.remove(&Area::OpenInstance);
+                    self.clear_areas(|it| *it == Area::OpenInstance);
                 }
                 let path = access.path;
-                self.each(&object.footprint, |walk, at| {
+                self.each(access.object, |walk, at| {
                     let waiting = &walk.waiting[at];
                     let (write, overridden) = (waiting.access.path, &waiting.overridden);
                     let apart = write != path
@@ -180,19 +261,19 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn write(
-        &mut self,
-        object: &'a Object,
-        access: &'a Access,
-        statement: &Statement,
-        value: Option<ExprId>,
-        when: ExprId,
-    ) {
+    fn clear_areas(&mut self, wanted: impl Fn(&Area) -> bool) {
+        self.areas.those(wanted).for_each(|it| self.lists.clear_area(it));
+    }
+
+    fn write(&mut self, access: &'a Access, statement: &Statement, value: Option<ExprId>, when: ExprId) {
         let (path, in_loop, anchor) = (access.path, statement.in_loop, access.anchor);
-        self.each(&object.footprint, |walk, at| {
+        self.each(access.object, |walk, at| {
             let waiting = &mut walk.waiting[at];
             let written = &walk.model.object(waiting.access.object).footprint;
-            if !object.footprint.contains(written) || waiting.in_loop != in_loop || waiting.by.len() >= MOST_WAITING {
+            if !walk.model.object(access.object).footprint.contains(written)
+                || waiting.in_loop != in_loop
+                || waiting.by.len() >= MOST_WAITING
+            {
                 return;
             }
             waiting.overridden.push([path, when]);
@@ -230,13 +311,13 @@ impl<'a> Walk<'a> {
         conditions.iter().all(|&it| self.model.exprs.is_within(it, LONGEST))
     }
 
-    fn wait(&mut self, object: &'a Object, it: Waiting<'a>) {
-        let Some(granules) = granules(&object.footprint) else { return };
+    fn wait(&mut self, it: Waiting<'a>) {
+        let object = it.access.object;
+        let Some(granules) = granules(&self.model.object(object).footprint) else { return };
         let Ok(at) = u32::try_from(self.waiting.len()) else { return };
         self.waiting.push(it);
-        let lists = self.areas.entry(&object.footprint.area).or_default();
         for granule in granules {
-            let list = lists.entry(granule).or_default();
+            let list = self.lists.list(self.areas.of(object), granule);
             list.retain(|&it| self.waiting[it as usize].open);
             if list.len() >= MOST_WAITING {
                 self.waiting[list.remove(0) as usize].open = false;
@@ -245,18 +326,25 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Everything that waits and shares memory with a place.
-    fn each(&mut self, place: &Footprint, mut each: impl FnMut(&mut Self, usize)) {
-        let (Some(lists), Some(granules)) = (self.areas.get(&place.area), granules(place)) else { return };
-        let mut found: Vec<u32> = granules.filter_map(|it| lists.get(&it)).flatten().copied().collect();
-        found.sort_unstable();
-        found.dedup();
-        for at in found {
+    /// Everything that waits and shares memory with an object.
+    fn each(&mut self, object: ObjectId, mut each: impl FnMut(&mut Self, usize)) {
+        let place = &self.model.object(object).footprint;
+        let Some(granules) = granules(place) else { return };
+        let (area, is_one) = (self.areas.of(object), granules.len() == 1);
+        let mut met = std::mem::take(&mut self.met);
+        met.clear();
+        granules.for_each(|it| met.extend_from_slice(self.lists.get(area, it)));
+        if !is_one {
+            met.sort_unstable();
+            met.dedup();
+        }
+        for &at in &met {
             let waiting = &self.waiting[at as usize];
             if waiting.open && self.model.object(waiting.access.object).footprint.overlaps(place) {
                 each(self, at as usize);
             }
         }
+        self.met = met;
     }
 
     /// Whether a value of the object has no effect but that something may read it in this scan or a later one.

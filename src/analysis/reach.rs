@@ -974,11 +974,14 @@ impl<'a> Ids<'a> {
 fn together(list: &[usize], belongs: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for &it in list {
-        let (mut own, others): (Vec<_>, Vec<_>) =
-            groups.into_iter().partition(|group| group.iter().any(|&other| belongs(it, other)));
-        own.push(vec![it]);
-        groups = others;
-        let mut joined = own.concat();
+        let mut joined = vec![it];
+        groups.retain_mut(|group| {
+            let is_own = group.iter().any(|&other| belongs(it, other));
+            if is_own {
+                joined.append(group);
+            }
+            !is_own
+        });
         joined.sort_unstable();
         groups.push(joined);
     }

@@ -25,11 +25,12 @@ pub struct FactLoop {
 }
 
 /// The loops of a unit, each behind those that it stands in.
-pub fn loops(model: &UnitModel) -> Vec<FactLoop> {
+pub fn loops(ranges: &Ranges<'_>) -> Vec<FactLoop> {
+    let model = ranges.model();
     if model.loops.is_empty() {
         return Vec::new();
     }
-    let counter = Counter { model, ranges: Ranges::new(model) };
+    let counter = Counter { model, ranges };
     let mut order: Vec<(u32, &Loop)> = (0..).zip(&model.loops).collect();
     order.sort_by_key(|(id, it)| (it.body.start, std::cmp::Reverse(it.body.end), *id));
     let mut found: Vec<FactLoop> = Vec::with_capacity(order.len());
@@ -64,12 +65,12 @@ fn operations(model: &UnitModel, it: &Loop) -> u64 {
     (accesses(model, it).len() + it.body.len()) as u64
 }
 
-struct Counter<'m> {
+struct Counter<'r, 'm> {
     model: &'m UnitModel,
-    ranges: Ranges<'m>,
+    ranges: &'r Ranges<'m>,
 }
 
-impl Counter<'_> {
+impl Counter<'_, '_> {
     fn turns(&self, id: u32, it: &Loop) -> Option<u64> {
         match it.counting {
             Some(Counting::Up { first, last }) => self.up(id, it, first, last),
@@ -425,11 +426,11 @@ mod tests {
     }
 
     fn st(text: &str) -> Vec<Option<u64>> {
-        loops(&model(text, Language::Pl7St)).iter().map(|it| it.turns).collect()
+        loops(&Ranges::new(&model(text, Language::Pl7St))).iter().map(|it| it.turns).collect()
     }
 
     fn awl(text: &str) -> Vec<Option<u64>> {
-        loops(&model(text, Language::Awl(Mnemonics::German))).iter().map(|it| it.turns).collect()
+        loops(&Ranges::new(&model(text, Language::Awl(Mnemonics::German)))).iter().map(|it| it.turns).collect()
     }
 
     #[test]
@@ -502,7 +503,7 @@ mod tests {
     fn what_a_turn_does() {
         let text =
             "! FOR %MW0 := 0 TO 9 DO %MW1 := %MW2; FOR %MW3 := 0 TO 9 DO %MW4 := %MW5; SR1; END_FOR; SR2; END_FOR;";
-        let found = loops(&model(text, Language::Pl7St));
+        let found = loops(&Ranges::new(&model(text, Language::Pl7St)));
         let [outer, inner] = found.as_slice() else { panic!("{found:?}") };
         assert_eq!((outer.parent, inner.parent), (None, Some(0)));
         assert_eq!((outer.calls.as_slice(), inner.calls.as_slice()), (&[1][..], &[0][..]));

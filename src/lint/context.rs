@@ -13,11 +13,12 @@ use crate::analysis::sequences::Sequences;
 use crate::model::UnitModel;
 use crate::model::object::{Class, Type};
 use crate::model::pl7_kinds::Kinds;
-use crate::syntax::{Parse, SyntaxKind, SyntaxNode};
+use crate::syntax::{Parse, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target::Target;
 
-/// Nodes with their parents, in the order of the text.
+/// Nodes with their parents, in the order of the text, and comments.
 struct NodesByKind<'a> {
+    comments: Vec<TextRange>,
     nodes: Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>,
     /// Indices into `nodes`, those of a kind together and in order.
     order: Vec<u32>,
@@ -26,7 +27,7 @@ struct NodesByKind<'a> {
 }
 
 impl<'a> NodesByKind<'a> {
-    fn new(nodes: Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>) -> Self {
+    fn new(nodes: Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>, comments: Vec<TextRange>) -> Self {
         let mut starts = [0_u32; 256];
         for (_, node) in &nodes {
             starts[node.kind() as usize] += 1;
@@ -42,7 +43,7 @@ impl<'a> NodesByKind<'a> {
             order[*end as usize] = at;
             *end += 1;
         }
-        Self { nodes, order, ends }
+        Self { comments, nodes, order, ends }
     }
 
     fn of(&self, kind: SyntaxKind) -> impl Iterator<Item = (SyntaxNode<'a>, SyntaxNode<'a>)> {
@@ -82,28 +83,54 @@ impl<'a> UnitCx<'a> {
 
     /// As [`Self::nodes`], each behind the node that it is a child of.
     pub fn nodes_in(&self, kind: SyntaxKind) -> impl Iterator<Item = (SyntaxNode<'a>, SyntaxNode<'a>)> {
-        let nodes = self.nodes.get_or_init(|| {
-            let root = self.parse.syntax();
-            let mut nodes = Vec::with_capacity(self.text.len() / 16);
-            let mut open = vec![(root, root.children_with_tokens())];
-            while let Some((parent, children)) = open.last_mut() {
-                let Some(child) = children.next() else {
-                    open.pop();
-                    continue;
+        self.index().of(kind)
+    }
+
+    /// The comments that are closed, in the order of the text.
+    pub fn comments(&self) -> &[TextRange] {
+        &self.index().comments
+    }
+
+    fn index(&self) -> &NodesByKind<'a> {
+        self.nodes.get_or_init(|| {
+            let (mut nodes, mut comments) = (Vec::with_capacity(self.text.len() / 16), Vec::new());
+            let mut open = Vec::with_capacity(16);
+            let mut parent = self.parse.syntax();
+            let mut children = parent.children_with_tokens();
+            loop {
+                let node = match children.next() {
+                    Some(SyntaxElement::Node(node)) => node,
+                    Some(SyntaxElement::Token(token)) => {
+                        if token.kind() == SyntaxKind::Comment {
+                            comments.push(token.text_range());
+                        }
+                        continue;
+                    }
+                    None => match open.pop() {
+                        Some(above) => {
+                            (parent, children) = above;
+                            continue;
+                        }
+                        None => break,
+                    },
                 };
                 // Leaves are by far the most, and no rule asks for all of them.
-                let Some(node) = child.into_node() else { continue };
                 match node.kind() {
-                    SyntaxKind::Literal => continue,
-                    SyntaxKind::ObjectRef | SyntaxKind::NameRef if node.is_leaf() => continue,
-                    SyntaxKind::ObjectRef | SyntaxKind::NameRef | SyntaxKind::IlInstr | SyntaxKind::Instr => {}
-                    _ => nodes.push((*parent, node)),
+                    SyntaxKind::ObjectRef | SyntaxKind::NameRef | SyntaxKind::Literal if node.is_leaf() => continue,
+                    SyntaxKind::ObjectRef
+                    | SyntaxKind::NameRef
+                    | SyntaxKind::Literal
+                    | SyntaxKind::IlInstr
+                    | SyntaxKind::Instr => {}
+                    _ => nodes.push((parent, node)),
                 }
-                open.push((node, node.children_with_tokens()));
+                if !node.is_leaf() {
+                    open.push((parent, std::mem::replace(&mut children, node.children_with_tokens())));
+                    parent = node;
+                }
             }
-            NodesByKind::new(nodes)
-        });
-        nodes.of(kind)
+            NodesByKind::new(nodes, comments)
+        })
     }
 
     /// Whether the author left parts of the unit out (`...`), as listings in documents do.

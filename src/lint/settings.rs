@@ -43,6 +43,7 @@ struct Inner {
     overrides: Overrides,
     base: Selection,
     per_file: Vec<PerFileRules>,
+    active: Vec<&'static Rule>,
     entities: Vec<(Gitignore, usize)>,
     encoding: Option<Encoding>,
 }
@@ -117,6 +118,7 @@ impl Default for Settings {
         let file = File::default();
         let mut base = Selection::none(rules());
         base.select(&[Selector::Default]);
+        let active = active(&base, &[]);
         Self(Arc::new(Inner {
             folders: Folders::default(),
             source: ConfigSource::default(),
@@ -124,6 +126,7 @@ impl Default for Settings {
             overrides: Overrides::default(),
             base,
             per_file: Vec::new(),
+            active,
             entities: Vec::new(),
             encoding: None,
         }))
@@ -562,7 +565,18 @@ impl Settings {
             globs.iter().try_for_each(|it| text.glob(it).map(drop))?;
         }
         let source = ConfigSource::new(text.text, path);
-        Ok(Self(Arc::new(Inner { folders, source, file, overrides, base, per_file, entities, encoding: forced })))
+        let active = active(&base, &per_file);
+        Ok(Self(Arc::new(Inner {
+            folders,
+            source,
+            file,
+            overrides,
+            base,
+            per_file,
+            active,
+            entities,
+            encoding: forced,
+        })))
     }
 
     /// The file that the settings are from; its text is empty when there is none.
@@ -607,12 +621,8 @@ impl Settings {
     }
 
     /// The rules that are on somewhere, in the order of codes.
-    pub fn active(&self) -> Vec<&'static Rule> {
-        let mut selection = self.0.base.clone();
-        for it in &self.0.per_file {
-            selection.select(&it.select);
-        }
-        selection.rules().collect()
+    pub fn active(&self) -> &[&'static Rule] {
+        &self.0.active
     }
 
     /// The controller, by a name that [`Target`] reads.
@@ -811,6 +821,12 @@ fn normal(path: &Path) -> PathBuf {
 
 fn matches(glob: &Gitignore, path: &Path) -> bool {
     !path.as_os_str().is_empty() && glob.matched_path_or_any_parents(path, false).is_ignore()
+}
+
+fn active(base: &Selection, per_file: &[PerFileRules]) -> Vec<&'static Rule> {
+    let mut selection = base.clone();
+    per_file.iter().for_each(|it| selection.select(&it.select));
+    selection.rules().collect()
 }
 
 fn selection(

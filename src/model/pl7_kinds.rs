@@ -109,12 +109,14 @@ impl Kind {
 pub struct Kinds<'t> {
     model: &'t UnitModel,
     known: RefCell<FxHashMap<SyntaxNode<'t>, Kind>>,
+    /// Of objects whose address alone does not tell: several rules ask for each.
+    types: RefCell<FxHashMap<SyntaxNode<'t>, Option<Type>>>,
 }
 
 impl<'t> Kinds<'t> {
     /// Of the tree that the model was made from.
     pub fn new(model: &'t UnitModel) -> Self {
-        Self { model, known: RefCell::default() }
+        Self { model, known: RefCell::default(), types: RefCell::default() }
     }
 
     /// Walks an expression once, operands before what they are operands of.
@@ -161,11 +163,13 @@ impl<'t> Kinds<'t> {
         {
             return Some(self.model.object(id).ty);
         }
-        let object = match it.index() {
-            Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()),
-            None => object::pl7::parse(&address),
-        };
-        object.ok().map(|it| it.ty)
+        *self.types.borrow_mut().entry(it.syntax()).or_insert_with(|| {
+            let object = match it.index() {
+                Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()),
+                None => object::pl7::parse(&address),
+            };
+            object.ok().map(|it| it.ty)
+        })
     }
 
     /// Kind of an operand, whose turn was before.

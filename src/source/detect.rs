@@ -14,7 +14,7 @@ use super::scan::{Comments, Lines};
 use super::{stx, symlist};
 use crate::model::entity::Family;
 pub use sample::Sample;
-use tally::{Tally, has_pl7_object};
+use tally::{Kind, Signs, Tally, has_pl7_object};
 
 /// What the user says that files are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -322,12 +322,16 @@ fn is_binary_mesh(bytes: &[u8]) -> bool {
 
 /// What a text is.
 pub fn detect(hint: FileHint<'_>, text: &str) -> Detected {
-    detect_tallied(hint, text, &sample::tally(text))
+    detect_tallied(hint, text, &sample::tally(text, kind(hint)))
 }
 
 /// The same of a text that was edited since the sample was last taken.
 pub fn detect_edited(hint: FileHint<'_>, text: &Arc<str>, sample: &mut Sample) -> Detected {
-    detect_tallied(hint, text, &sample.take(text))
+    detect_tallied(hint, text, &sample.take(text, kind(hint)))
+}
+
+fn kind(hint: FileHint<'_>) -> Kind {
+    if extension(hint.path) == Extension::Table { Kind::Table } else { Kind::Other }
 }
 
 fn detect_tallied(hint: FileHint<'_>, text: &str, tally: &Tally) -> Detected {
@@ -382,14 +386,14 @@ fn detect_form(hint: FileHint<'_>, text: &str, tally: &Tally) -> Detected {
 
 /// The language of PL7 text that no heading and no file name tells.
 pub(super) fn pl7_text(text: &str) -> Pl7Text {
-    sample::tally(text).pl7_text(Extension::Other)
+    sample::tally(text, Kind::Other).pl7_text(Extension::Other)
 }
 
 /// Whose operands ladder and charts have, by most of the lines that say so; `None` if none does.
 pub(super) fn operands_of(text: &str) -> Option<Family> {
     let mut tally = Tally::default();
     for line in Lines::new(text, Comments::Pl7) {
-        tally.add_operands(line.code, has_pl7_object(line.code));
+        tally.add_operands(line.code, Signs::of(line.code), has_pl7_object(line.code));
     }
     let is_told = tally.pl7_2 + tally.not_pl7_2 > 0;
     is_told.then(|| if tally.is_pl7_2(None) { Family::Pl72 } else { Family::Pl7 })

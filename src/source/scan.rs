@@ -92,14 +92,22 @@ impl<'t> Iterator for Lines<'t> {
         if start >= bytes.len() {
             return None;
         }
-        // Most lines are code without comments.
+        // Most lines are empty, or code without comments.
         let first = skip_blanks(self.text, start);
-        if bytes.get(first).is_some_and(|byte| !matches!(byte, b'(' | b'/' | b'T' | b't' | b'N' | b'n' | b'\n' | b'\r'))
-        {
-            let (end, comment) = self.plain_line(first);
-            if comment.is_none() {
-                self.pos = end;
-                return Some(Line { start, end, code_start: first, code: trim_end(self.text, first, end) });
+        let mut plain = None;
+        match bytes.get(first) {
+            Some(b'\n') => {
+                self.pos = first + 1;
+                return Some(Line { start, end: self.pos, code_start: self.pos, code: "" });
+            }
+            Some(b'(' | b'/' | b'T' | b't' | b'N' | b'n' | b'\r') | None => {}
+            Some(_) => {
+                let (end, comment) = self.plain_line(first);
+                if comment.is_none() {
+                    self.pos = end;
+                    return Some(Line { start, end, code_start: first, code: trim_end(self.text, first, end) });
+                }
+                plain = Some((end, comment));
             }
         }
         let mut code: Option<(usize, usize)> = None;
@@ -116,7 +124,7 @@ impl<'t> Iterator for Lines<'t> {
                 }
                 break end;
             }
-            let (stop, comment) = self.plain_line(first);
+            let (stop, comment) = plain.take().unwrap_or_else(|| self.plain_line(first));
             if code.is_none() && first < comment.unwrap_or_else(|| before_break(bytes, stop)) {
                 code = Some((first, comment.unwrap_or(stop)));
             }

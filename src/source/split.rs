@@ -55,12 +55,12 @@ pub fn split(text: &str, detected: Detected, hint: &SplitHint) -> Vec<UnitSpan> 
         Detected::Step7 => step7(&mut units, hint),
         Detected::Step5 => step5(&mut units, hint),
         Detected::Step5Symbols => units.push(0, Draft::new(Entity::Container, Some(Language::Step5Symbols))),
-        Detected::Pasted(default) => pasted(&mut units, default, Family::Pl7, hint),
+        Detected::Pasted(default) => pasted(&mut units, || default, Family::Pl7, hint),
         Detected::Exchange => exchange(&mut units, Family::Pl7),
         Detected::Pl72Exchange => exchange(&mut units, Family::Pl72),
         Detected::Step7Symbols => units.push(0, Draft::new(Entity::Container, Some(Language::SymbolTable))),
         Detected::Stx => project(&mut units),
-        Detected::Pl72 => pasted(&mut units, pl7_2_text(text), Family::Pl72, hint),
+        Detected::Pl72 => pasted(&mut units, || pl7_2_text(text), Family::Pl72, hint),
         Detected::Unsupported { what: form } | Detected::Unreadable { why: form } => {
             units.push(0, Draft { unsupported: Some(form), ..Draft::container() });
         }
@@ -411,10 +411,10 @@ fn mnemonics(text: &str) -> Mnemonics {
 }
 
 /// PL7 and PL7-2 as they are pasted in documents: headings, and code before the first one. Each heading says whose part
-/// follows; `default` and `family` are of code that no heading names.
-fn pasted(units: &mut Units<'_>, default: Pl7Text, family: Family, hint: &SplitHint) {
+/// follows; `default` and `family` are of code that no heading names. Most texts have none, so that nobody asks.
+fn pasted(units: &mut Units<'_>, default: impl Fn() -> Pl7Text, family: Family, hint: &SplitHint) {
     let unnamed = |family| {
-        let language = of_family(pl7_language(default), family);
+        let language = of_family(pl7_language(default()), family);
         let graph = if family == Family::Pl72 { "SEQ" } else { "CHART" };
         let part = if language.is_chart() { Part::Chart(graph.into()) } else { Part::Main };
         let main = Entity::Pl7 { task: Task::Mast, section: None, part };

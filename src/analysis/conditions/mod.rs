@@ -164,6 +164,9 @@ impl<'a> Space<'a> {
         if given.contains(&Exprs::FALSE) || others.contains(&[Exprs::TRUE; 2]) {
             return Verdict::Never;
         }
+        if let Some(verdict) = self.by_parts(given, others) {
+            return verdict;
+        }
         let wanted: Vec<(ExprId, bool)> = given.iter().map(|&it| (it, true)).collect();
         self.decide(&Question { wanted: &wanted, never: others })
     }
@@ -178,23 +181,46 @@ impl<'a> Space<'a> {
         if a == b || a == Exprs::FALSE || b == Exprs::TRUE {
             return true;
         }
-        // What is free of a condition is false while it holds. A disjunction is false where all that it is made of is.
-        let (mut given, mut parts) = (Vec::new(), Vec::new());
-        spread(self.exprs, a, &mut given);
-        spread(self.exprs, b, &mut parts);
-        let is_free = |part: &ExprId| {
-            let mut all = Vec::new();
-            spread_disjuncts(self.exprs, *part, &mut all);
-            let is_possible = |it: &ExprId| *it != Exprs::TRUE && !given.contains(it);
-            all.iter().all(is_possible) && {
-                all.extend_from_slice(&given);
-                self.by_form(&mut all) == Some(Verdict::Possible)
-            }
-        };
-        /// So many parts are looked at.
+        let verdict = self.by_parts(&[a], &[[b, Exprs::TRUE]]);
+        let decide = || self.decide(&Question { wanted: &[(a, true), (b, false)], never: &[] });
+        verdict.unwrap_or_else(decide) == Verdict::Never
+    }
+
+    /// What the form of conditions tells of whether they can hold at once while of each pair one does not: they cannot when
+    /// they hold all parts of a pair, and they can when some part of each pair is free of them and of the others.
+    fn by_parts(&self, given: &[ExprId], pairs: &[[ExprId; 2]]) -> Option<Verdict> {
+        /// So many pairs, and parts of each, are looked at.
         const FEW: usize = 4;
-        !parts.iter().take(FEW).any(is_free)
-            && self.decide(&Question { wanted: &[(a, true), (b, false)], never: &[] }) == Verdict::Never
+        if pairs.len() > FEW {
+            return None;
+        }
+        let (mut all, mut parts, mut with_part) = (Vec::new(), Vec::new(), Vec::new());
+        given.iter().for_each(|it| spread(self.exprs, *it, &mut all));
+        if pairs.is_empty() {
+            return self.by_form(&mut all);
+        }
+        let held = all.len();
+        let mut is_free = true;
+        for pair in pairs {
+            parts.clear();
+            pair.iter().for_each(|it| spread(self.exprs, *it, &mut parts));
+            parts.retain(|it| *it != Exprs::TRUE && !all[..held].contains(it));
+            if parts.is_empty() {
+                return Some(Verdict::Never);
+            }
+            // What is free of conditions is false while they hold. A disjunction is false where all that it is made of is.
+            let start = all.len();
+            is_free = is_free
+                && parts.iter().take(FEW).any(|&part| {
+                    all.truncate(start);
+                    spread_disjuncts(self.exprs, part, &mut all);
+                    let (before, own) = all.split_at(start);
+                    let is_open = own.iter().all(|it| *it != Exprs::TRUE && !before[..held].contains(it));
+                    with_part.clone_from(&all);
+                    is_open && self.by_form(&mut with_part) == Some(Verdict::Possible)
+                });
+        }
+        is_free.then_some(Verdict::Possible)
     }
 
     /// Whether two conditions surely hold at the same moments.
@@ -204,6 +230,9 @@ impl<'a> Space<'a> {
 
     /// Whether a condition is always true, always false, or neither, wherever another one holds.
     pub fn constant(&self, given: ExprId, condition: ExprId) -> Option<bool> {
+        if given == Exprs::TRUE && self.is_bit(condition) {
+            return None;
+        }
         if self.exclusive(given, condition) { Some(false) } else { self.implies(given, condition).then_some(true) }
     }
 
@@ -279,6 +308,12 @@ impl<'a> Space<'a> {
             })
         };
         terms.windows(2).all(|it| it[0] != it[1]) && !terms.iter().any(is_part)
+    }
+
+    /// Whether a condition asks one bit, and nothing else.
+    fn is_bit(&self, condition: ExprId) -> bool {
+        let atom = if let Expr::Not(inner) = *self.exprs.get(condition) { inner } else { condition };
+        matches!(*self.exprs.get(atom), Expr::Read { .. })
     }
 
     /// Whether a condition asks a step time for what it never is, or always is.

@@ -101,8 +101,8 @@ impl<'s, 'a> Problem<'s, 'a> {
     /// `None` when the conditions are too large.
     pub(super) fn new(space: &'s Space<'a>, question: &Question<'_>) -> Option<Self> {
         let ids = nodes(space, question)?;
-        let mut problem =
-            Self { space, gates: Vec::with_capacity(ids.len()), ids, atoms: Vec::new(), terms: Vec::new() };
+        let (gates, atoms) = (Vec::with_capacity(ids.len()), Vec::with_capacity(ids.len()));
+        let mut problem = Self { space, gates, ids, atoms, terms: Vec::new() };
         for at in 0..problem.ids.len() {
             let node = |id: ExprId| problem.node(id);
             let gate = match *space.exprs.get(problem.ids[at]) {
@@ -451,9 +451,10 @@ impl<'s, 'a> Problem<'s, 'a> {
 fn nodes(space: &Space<'_>, question: &Question<'_>) -> Option<Vec<ExprId>> {
     /// Fewer than these are looked through, more are hashed.
     const FEW: usize = 48;
-    let mut nodes: Vec<ExprId> = Vec::new();
+    let mut nodes: Vec<ExprId> = Vec::with_capacity(FEW);
     let mut many = rustc_hash::FxHashSet::default();
-    let mut stack: Vec<ExprId> = question.wanted.iter().map(|it| it.0).collect();
+    let mut stack: Vec<ExprId> = Vec::with_capacity(FEW);
+    stack.extend(question.wanted.iter().map(|it| it.0));
     stack.extend(question.never.iter().flatten());
     while let Some(id) = stack.pop() {
         let is_new = if nodes.len() < FEW {

@@ -9,7 +9,6 @@ use crate::analysis::counts::{self, Ends};
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::{ObjectUses, ProgramIndex};
 use crate::analysis::stretches::Stretches;
-use crate::model::UnitModel;
 use crate::model::entity::Family;
 use crate::model::expr::{Expr, Exprs};
 use crate::model::object::{Area, Class, Object, Type};
@@ -31,11 +30,8 @@ pub struct Demanded {
 }
 
 /// The demands of a unit of which something is known, or the program may know something.
-pub fn of_unit(model: &UnitModel) -> Vec<Demanded> {
-    if model.demands.is_empty() {
-        return Vec::new();
-    }
-    let ranges = Ranges::new(model);
+pub fn of_unit(ranges: &Ranges<'_>) -> Vec<Demanded> {
+    let model = ranges.model();
     let known = model.demands.iter().filter_map(|it| {
         let (object, is_left) = match *model.exprs.get(it.value) {
             Expr::Read { object, version } => (Some(object.0), ranges.may_be_left(object, version, it.path)),

@@ -41,7 +41,8 @@ struct Store {
 pub struct Ranges<'m> {
     model: &'m UnitModel,
     by_blocks: bool,
-    stores: FxHashMap<(ObjectId, u32), Store>,
+    /// By object, and the version that they make.
+    stores: OnceCell<FxHashMap<(ObjectId, u32), Store>>,
     /// Loops into which a jump leads.
     entered: FxHashSet<u32>,
     /// Of each loop, whether it leaves its index alone.
@@ -60,22 +61,19 @@ struct Query {
 }
 
 impl<'m> Ranges<'m> {
+    /// Costs next to nothing until something is asked.
     pub fn new(model: &'m UnitModel) -> Self {
-        let replaced: FxHashMap<u32, u32> = model.replaced.iter().copied().collect();
-        let mut stores = FxHashMap::default();
-        for it in &model.statements {
-            let StatementKind::Store { access: at, value } = it.kind else { continue };
-            let (Some(access), Some(&replaced)) = (model.accesses.get(at as usize), replaced.get(&at)) else {
-                continue;
-            };
-            if model.object(access.object).is_fixed() {
-                let store = Store { value, path: it.path, replaced, anchor: access.anchor };
-                stores.insert((access.object, access.version), store);
-            }
-        }
         let steady = model.loops.iter().map(|_| OnceCell::new()).collect();
         let by_blocks = Space::of(model).family.has_blocks();
-        Self { model, by_blocks, stores, entered: entered(model), steady }
+        Self { model, by_blocks, stores: OnceCell::new(), entered: entered(model), steady }
+    }
+
+    pub(super) fn model(&self) -> &'m UnitModel {
+        self.model
+    }
+
+    fn store(&self, object: ObjectId, version: u32) -> Option<&Store> {
+        self.stores.get_or_init(|| stores(self.model)).get(&(object, version))
     }
 
     /// The values that an expression can have at a statement that control comes to by a path. `None` when it is no whole
@@ -88,7 +86,7 @@ impl<'m> Ranges<'m> {
     /// Whether an object that is read under a path may hold what other code left in it.
     pub fn may_be_left(&self, object: ObjectId, mut version: u32, path: ExprId) -> bool {
         // A version replaces one before it.
-        while let Some(store) = self.stores.get(&(object, version)) {
+        while let Some(store) = self.store(object, version) {
             if self.model.exprs.has_conjunct_prefix(path, store.path) || store.replaced >= version {
                 return false;
             }
@@ -128,7 +126,7 @@ impl<'m> Ranges<'m> {
     fn read(&self, query: &Query, object: ObjectId, version: u32, given: &Given, depth: u32) -> Option<Number> {
         let place = Number::of(self.model.object(object))?;
         let mut number = place;
-        if let Some(store) = self.stores.get(&(object, version)) {
+        if let Some(store) = self.store(object, version) {
             number = self.stored(query, object, store, given, depth)?;
         } else if let Some(counted) = self.counted(query, object, version, given, depth) {
             number.span = counted.stored_in(place).span;
@@ -278,6 +276,9 @@ impl<'m> Ranges<'m> {
 
     /// `ways`: disjunctions in one another that are looked into.
     fn narrow(&self, query: &Query, id: ExprId, number: Number, given: &Given, depth: u32, ways: u32) -> Option<Span> {
+        if given.iter().all(|it| *it == (Exprs::TRUE, true)) {
+            return Some(number.span);
+        }
         let exprs = &self.model.exprs;
         let mut open: Vec<(ExprId, bool)> = given.to_vec();
         let (mut known, mut unequal, mut choices) = (Vec::new(), Vec::new(), Vec::new());
@@ -361,6 +362,21 @@ impl<'m> Ranges<'m> {
             _ => Some(other),
         }
     }
+}
+
+fn stores(model: &UnitModel) -> FxHashMap<(ObjectId, u32), Store> {
+    let mut stores = FxHashMap::default();
+    stores.reserve(model.replaced.len());
+    for it in &model.statements {
+        let StatementKind::Store { access: at, value } = it.kind else { continue };
+        let replaced = model.replaced.binary_search_by_key(&at, |it| it.0).ok().map(|it| model.replaced[it].1);
+        let (Some(access), Some(replaced)) = (model.accesses.get(at as usize), replaced) else { continue };
+        if model.object(access.object).is_fixed() {
+            let store = Store { value, path: it.path, replaced, anchor: access.anchor };
+            stores.insert((access.object, access.version), store);
+        }
+    }
+    stores
 }
 
 /// Loops into which some jump leads from outside.

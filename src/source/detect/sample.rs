@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::edit::difference;
 use super::super::scan::{Comments, Lines};
-use super::tally::Tally;
+use super::tally::{Kind, Tally};
 
 /// How much of a text is looked at.
 const SAMPLE: usize = 128 * 1024;
@@ -12,10 +12,10 @@ const SAMPLE: usize = 128 * 1024;
 /// Lines that are counted together.
 const LINES: usize = 64;
 
-/// What the sample of a text looks like.
-pub(super) fn tally(text: &str) -> Tally {
+/// What the sample of a text looks like. `kind`: as far as its name tells.
+pub(super) fn tally(text: &str, kind: Kind) -> Tally {
     let text = cut(text);
-    let mut tally = Tally::of_start(text);
+    let mut tally = Tally::of_start(text, kind);
     Lines::new(text, Comments::Step7).for_each(|it| tally.add_line(it.code));
     tally
 }
@@ -34,6 +34,7 @@ fn cut(text: &str) -> &str {
 #[derive(Debug, Default)]
 pub struct Sample {
     text: Arc<str>,
+    kind: Kind,
     /// They tile the sample, in order.
     pieces: Vec<Piece>,
 }
@@ -50,14 +51,17 @@ struct Piece {
 
 impl Piece {
     /// Without lines, behind others.
-    fn behind(before: Option<&Self>) -> Self {
+    fn behind(before: Option<&Self>, kind: Kind) -> Self {
         let (at, in_code_block) = before.map_or((0, false), |it| (it.end, it.tally.in_code_block));
-        Self { start: at, end: at, in_code_block, tally: Tally::behind(in_code_block) }
+        Self { start: at, end: at, in_code_block, tally: Tally::behind(in_code_block, kind) }
     }
 }
 
 impl Sample {
-    pub(super) fn take(&mut self, text: &Arc<str>) -> Tally {
+    pub(super) fn take(&mut self, text: &Arc<str>, kind: Kind) -> Tally {
+        if std::mem::replace(&mut self.kind, kind) != kind {
+            *self = Self { kind, ..Self::default() };
+        }
         let old = std::mem::replace(&mut self.text, text.clone());
         let (sample, last) = (cut(text), cut(&old).len());
         let (start, end) = difference(&old, text);
@@ -73,12 +77,12 @@ impl Sample {
         let mut behind = behind.filter(|it| it.end < sample.len()).peekable();
         let mut lines = Lines::new(sample, Comments::Step7);
         loop {
-            let mut piece = Piece::behind(self.pieces.last());
+            let mut piece = Piece::behind(self.pieces.last(), kind);
             while behind.next_if(|it| it.start < piece.start).is_some() {}
             // Lines that begin where others did, and as the text before leaves off there, are counted already.
             while let Some(it) = behind.next_if(|it| (it.start, it.in_code_block) == (piece.start, piece.in_code_block))
             {
-                piece = Piece::behind(Some(&it));
+                piece = Piece::behind(Some(&it), kind);
                 self.pieces.push(it);
             }
             let next = behind.peek().map_or(usize::MAX, |it| it.start);
@@ -95,7 +99,7 @@ impl Sample {
             }
             self.pieces.push(piece);
         }
-        let mut tally = Tally::of_start(sample);
+        let mut tally = Tally::of_start(sample, kind);
         self.pieces.iter().for_each(|it| tally.join(&it.tally));
         tally
     }
@@ -144,17 +148,18 @@ mod tests {
             first in text(),
             edits in prop::collection::vec((any::<prop::sample::Index>(), 0..40usize, prop::collection::vec(line(), 0..4)), 1..8),
             pad in prop::sample::select(vec![0, SAMPLE - 2000, SAMPLE]),
+            kind in prop::sample::select(vec![Kind::Other, Kind::Table]),
         ) {
             let mut text = " ".repeat(pad) + &first;
             let mut sample = Sample::default();
             for (at, length, lines) in edits {
-                let take = |sample: &mut Sample, text: &str| sample.take(&text.into());
-                prop_assert_eq!(take(&mut sample, &text), tally(&text));
+                let take = |sample: &mut Sample, text: &str| sample.take(&text.into(), kind);
+                prop_assert_eq!(take(&mut sample, &text), tally(&text, kind));
                 let boundary = |it: usize| (0..=it.min(text.len())).rfind(|it| text.is_char_boundary(*it)).unwrap_or(0);
                 let start = boundary(at.index(text.len() + 1));
                 let end = boundary(start + length);
                 text.replace_range(start..end, &lines.concat());
-                prop_assert_eq!(take(&mut sample, &text), tally(&text));
+                prop_assert_eq!(take(&mut sample, &text), tally(&text, kind));
             }
         }
     }
@@ -163,10 +168,10 @@ mod tests {
     fn an_edit_counts_the_lines_around_it() {
         let text = "      U     E 1.0;\n".repeat(1000);
         let mut sample = Sample::default();
-        sample.take(&text.as_str().into());
+        sample.take(&text.as_str().into(), Kind::Other);
         let before: Vec<(usize, usize)> = sample.pieces.iter().map(|it| (it.start, it.end)).collect();
         let edited = format!("{}!{}", &text[..9000], &text[9000..]);
-        sample.take(&edited.as_str().into());
+        sample.take(&edited.as_str().into(), Kind::Other);
         let after: Vec<(usize, usize)> = sample.pieces.iter().map(|it| (it.start, it.end)).collect();
         let is_kept = |it: &&(usize, usize)| before.contains(it) || before.contains(&(it.0 - 1, it.1 - 1));
         assert!(before.len() > 10 && after.len() <= before.len() + 1);

@@ -1,5 +1,7 @@
 //! Counts of the lines of a text by what they look like.
 
+use std::borrow::Cow;
+
 use super::super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, step5_code, step5_heading,
     strip_prefix_ignore_case, word,
@@ -29,9 +31,53 @@ fn declared_by_pl7_2(address: &str) -> bool {
 /// Of this many lines of STEP 5 that STEP 7 has too, one is its own at least: the end of a segment, a call.
 const STEP5_SHARE: u32 = 16;
 
+/// What a text can be by its name.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A symbol table: in any other file, nobody asks whether lines are rows of one.
+    Table,
+    #[default]
+    Other,
+}
+
+/// Which of the signs that tell languages apart a line has. To look through it once costs less than to look for each.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Signs(u8);
+
+impl Signs {
+    const SLASH: u8 = 1;
+    const PERCENT: u8 = 1 << 1;
+    const COMMA: u8 = 1 << 2;
+    const GREATER: u8 = 1 << 3;
+    const COLON: u8 = 1 << 4;
+    /// `A`, in any case.
+    const A: u8 = 1 << 5;
+
+    const OF: [u8; 256] = {
+        let mut of = [0; 256];
+        of[b'/' as usize] = Self::SLASH;
+        of[b'%' as usize] = Self::PERCENT;
+        of[b',' as usize] = Self::COMMA;
+        of[b'>' as usize] = Self::GREATER;
+        of[b':' as usize] = Self::COLON;
+        of[b'A' as usize] = Self::A;
+        of[b'a' as usize] = Self::A;
+        of
+    };
+
+    pub(super) fn of(line: &str) -> Self {
+        Self(line.bytes().fold(0, |signs, it| signs | Self::OF[usize::from(it)]))
+    }
+
+    fn has(self, sign: u8) -> bool {
+        self.0 & sign != 0
+    }
+}
+
 /// Counts of the lines of a text by what they look like. Comments and empty lines are not counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Tally {
+    kind: Kind,
     pub(super) lines: u32,
     /// STEP 7 instructions with an operand of the right shape, or none where none is due.
     pub(super) step7: u32,
@@ -103,23 +149,24 @@ pub(super) struct Tally {
 
 impl Tally {
     /// Of a text that starts so.
-    pub(super) fn of_start(text: &str) -> Self {
-        Self { markup: text.trim_start().starts_with(['<', '{']), ..Self::default() }
+    pub(super) fn of_start(text: &str, kind: Kind) -> Self {
+        Self { markup: text.trim_start().starts_with(['<', '{']), kind, ..Self::default() }
     }
 
     /// Of lines behind others.
-    pub(super) fn behind(in_code_block: bool) -> Self {
-        Self { in_code_block, ..Self::default() }
+    pub(super) fn behind(in_code_block: bool, kind: Kind) -> Self {
+        Self { in_code_block, kind, ..Self::default() }
     }
 
     /// Counts what a line, as [`Lines`] cuts it, has besides blanks and comments. A line comment is none in PL7, but no PL7
     /// text has `//` outside of comments.
     pub(super) fn add_line(&mut self, code: &str) {
-        let code = before_line_comment(code).trim();
+        let signs = Signs::of(code);
+        let code = if signs.has(Signs::SLASH) { before_line_comment(code) } else { code }.trim();
         // Parentheses and the dots of an omission alone mean nothing.
         // A semicolon starts a comment of STEP 5.
         if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) && !(code.starts_with(';') && code.len() > 1) {
-            self.add(code);
+            self.add(code, signs);
         }
     }
 
@@ -127,7 +174,7 @@ impl Tally {
     pub(super) fn join(&mut self, behind: &Self) {
         macro_rules! sum {
             ($($count:ident)*) => {
-                let Self { $($count,)* in_code_block, markup: _ } = *behind;
+                let Self { $($count,)* in_code_block, markup: _, kind: _ } = *behind;
                 $(self.$count += $count;)*
                 self.in_code_block = in_code_block;
             };
@@ -140,13 +187,12 @@ impl Tally {
         }
     }
 
-    fn add(&mut self, line: &str) {
+    /// `signs`: at least those of the line.
+    fn add(&mut self, line: &str, signs: Signs) {
         self.lines += 1;
-        let of_step5 = is_step5_row(line);
-        self.symbols += u32::from(of_step5 || is_symbol_row(line));
-        self.step5_blocks += u32::from(of_step5);
-        self.interchange += u32::from(matches!(line, "TABLE" | "VECTORS" | "TUPLES" | "BOT"));
-        self.symbols_step5 += u32::from(symbols::row(line).is_some());
+        if self.kind == Kind::Table {
+            self.add_row(line);
+        }
         if let Some((block, _)) = exchange_block(line) {
             self.blocks += 1;
             self.own_blocks += u32::from(matches!(block, "[SOURCE_UNIT]" | "[DATA_UNIT]"));
@@ -165,20 +211,28 @@ impl Tally {
         } else if block_end(line).is_some() {
             self.block_ends += 1;
         } else {
-            self.add_code(line);
+            self.add_code(line, signs);
         }
     }
 
-    fn add_code(&mut self, line: &str) {
-        let has_object = has_pl7_object(line);
+    fn add_row(&mut self, line: &str) {
+        let of_step5 = is_step5_row(line);
+        self.symbols += u32::from(of_step5 || is_symbol_row(line));
+        self.step5_blocks += u32::from(of_step5);
+        self.interchange += u32::from(matches!(line, "TABLE" | "VECTORS" | "TUPLES" | "BOT"));
+        self.symbols_step5 += u32::from(symbols::row(line).is_some());
+    }
+
+    fn add_code(&mut self, line: &str, signs: Signs) {
+        let has_object = signs.has(Signs::PERCENT) && has_pl7_object(line);
         let is_pl7 = line.starts_with('!') || has_object;
         let code = strip_pl7_label(line.strip_prefix('!').unwrap_or(line).trim_start());
-        let first = word(code).0.to_ascii_uppercase();
-        let first = first.as_str();
+        let first = upper(word(code).0);
+        let first = &*first;
         self.pl7 += u32::from(is_pl7);
-        self.add_operands(line, has_object);
+        self.add_operands(line, signs, has_object);
         self.dfb += u32::from(is_dfb_line(code, first));
-        self.variables += u32::from(is_variable(code));
+        self.variables += u32::from((signs.has(Signs::COLON) || signs.has(Signs::A)) && is_variable(code));
         match pl7_statement(code, first, is_pl7) {
             Some(Pl7Text::Il) => self.il += 1,
             Some(Pl7Text::St) => {
@@ -227,8 +281,8 @@ impl Tally {
     }
 
     /// `has_object`: [`has_pl7_object`].
-    pub(super) fn add_operands(&mut self, line: &str, has_object: bool) {
-        self.pl7_2 += u32::from(has_pl7_2_object(line));
+    pub(super) fn add_operands(&mut self, line: &str, signs: Signs, has_object: bool) {
+        self.pl7_2 += u32::from(has_pl7_2_object(line, signs));
         self.not_pl7_2 += u32::from(has_object && has_object_of_pl7_alone(line));
     }
 
@@ -360,11 +414,14 @@ fn is_dfb_line(code: &str, first: &str) -> bool {
         _ => {}
     }
     let bytes = code.as_bytes();
+    let is_behind = |at: usize, letters: [u8; 2]| at.checked_sub(1).is_some_and(|it| letters.contains(&bytes[it]));
     // Nearly no line has letters that one of the words could be made of.
-    let may_be_type = memchr::memchr3(b'_', b'B', b'b', bytes).is_some();
+    let may_be_type = memchr::memchr3_iter(b'_', b'B', b'b', bytes).any(|at| match bytes[at] {
+        b'_' => is_behind(at, [b'R', b'r']),
+        _ => is_behind(at, [b'E', b'e']),
+    });
     let mut words = code.split(|it: char| !(it.is_alphanumeric() || it == '_'));
-    let is_edge = |at: usize| at.checked_sub(1).is_some_and(|it| matches!(bytes[it], b'R' | b'F'));
-    let may_be_edge = memchr::memchr_iter(b'E', bytes).any(is_edge);
+    let may_be_edge = memchr::memchr_iter(b'E', bytes).any(|at| is_behind(at, [b'R', b'F']));
     let mut blanks = code.split_whitespace().map(|it| it.trim_start_matches('(')).peekable();
     may_be_type
         && words.any(|it| ["EBOOL", "AR_X", "AR_W", "AR_D", "AR_R"].iter().any(|ty| ty.eq_ignore_ascii_case(it)))
@@ -383,6 +440,13 @@ fn is_chart_line(code: &str, first: &str) -> bool {
         "TRANSITION" => rest.starts_with('(') || ["AT", "FROM"].iter().any(|it| it.eq_ignore_ascii_case(next)),
         "PAGE" => !next.is_empty() && next.bytes().all(|it| it.is_ascii_digit()),
         _ => true,
+    }
+}
+
+fn upper(word: &str) -> Cow<'_, str> {
+    match word.bytes().any(|it| it.is_ascii_lowercase()) {
+        true => Cow::Owned(word.to_ascii_uppercase()),
+        false => Cow::Borrowed(word),
     }
 }
 
@@ -434,21 +498,27 @@ pub(super) fn has_pl7_object(line: &str) -> bool {
 
 /// Whether a line names an object, or transfers a value, as PL7-2 alone does: `I0,05`, `T0,D`, `W5,A`, `W1 -> W2`. No symbol
 /// has a comma.
-fn has_pl7_2_object(line: &str) -> bool {
+fn has_pl7_2_object(line: &str, signs: Signs) -> bool {
     let bytes = line.as_bytes();
     let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
-    // Nearly no line has any of these: to look whether one is there costs less than to look where.
-    let mut words = line.split(|it| !is_part(it)).filter(|it| it.len() <= LONGEST_PL7_2 && it.contains(','));
+    // The comma stands behind letters, or a number behind them.
+    let has_form = |it: &&str| {
+        let letters = it.trim_start_matches(|it: char| it.is_ascii_alphabetic());
+        let is_name = letters.len() < it.len() && it.len() <= LONGEST_PL7_2;
+        is_name && letters.trim_start_matches(|it: char| it.is_ascii_digit()).starts_with(',')
+    };
+    let mut words = line.split(|it| !is_part(it)).filter(has_form);
     let mut is_named = || words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault));
-    let has_arrow = || memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
+    let has_arrow =
+        || signs.has(Signs::GREATER) && memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
     let is_transfer = || line.contains("END_BLOCK") && !line.contains(":=");
     let address = || {
         let at = memchr::memchr_iter(b'A', bytes).find(|&at| at > 0 && bytes[at - 1..].starts_with(b" AT "))?;
         line.get(at + 3..)
     };
-    memchr::memchr(b',', bytes).is_some() && is_named()
+    signs.has(Signs::COMMA) && is_named()
         || has_arrow() && is_transfer()
-        || address().is_some_and(|it| declared_by_pl7_2(it.trim_start()))
+        || signs.has(Signs::A) && address().is_some_and(|it| declared_by_pl7_2(it.trim_start()))
 }
 
 /// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
@@ -500,7 +570,7 @@ fn pl7_statement(code: &str, first: &str, has_object: bool) -> Option<Pl7Text> {
             Some(Pl7Text::St)
         }
         _ if code.starts_with('[') && has_object => Some(Pl7Text::Il),
-        _ if code.contains(":=") && code.ends_with(';') => Some(Pl7Text::St),
+        _ if code.ends_with(';') && code.contains(":=") => Some(Pl7Text::St),
         _ => None,
     }
 }
@@ -527,7 +597,7 @@ fn is_step7_instruction(line: &str) -> bool {
     }
     let (mnemonic, rest) = word(line);
     let operand = rest.trim();
-    match mnemonic.to_ascii_uppercase().as_str() {
+    match &*upper(mnemonic) {
         "U" | "UN" | "A" | "AN" | "ON" | "X" | "XN" => operand == "(" || is_step7_operand(operand),
         "O" => matches!(operand, "" | "(") || is_step7_operand(operand),
         "S" | "R" | "FP" | "FN" | "L" | "T" | "SI" | "SV" | "SE" | "SS" | "SA" | "SP" | "SD" | "SF" | "FR" | "ZV"
