@@ -124,6 +124,7 @@ impl<'t> Kinds<'t> {
         }
         for event in expr.syntax().walk() {
             if let WalkEvent::Leave(node) = event
+                && !node.is_leaf()
                 && let Some(inner) = Expr::cast(node)
                 && !matches!(inner, Expr::Name(_) | Expr::Literal(_) | Expr::Object(_))
                 && !self.known.borrow().contains_key(&node)
@@ -157,7 +158,7 @@ impl<'t> Kinds<'t> {
         let Expr::Object(it) = expr else { return None };
         let address = it.address();
         if it.syntax().is_leaf()
-            && let Some(&id) = self.model.addresses.get(&*address)
+            && let Some(id) = self.model.address(&address)
         {
             return Some(self.model.object(id).ty);
         }

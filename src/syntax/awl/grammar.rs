@@ -6,6 +6,7 @@
 use rowan::{TextRange, TextSize};
 
 use super::instruction::{self, Op, OperandRule};
+use crate::syntax::packed::pack;
 use crate::syntax::{Mnemonics, Parser, SyntaxKind};
 
 use SyntaxKind::*;
@@ -128,6 +129,23 @@ const WORDS: [(&str, Keyword); 29] = [
     ("NON_RETAIN", Keyword::Flag),
 ];
 
+/// [`WORDS`] as numbers, in their order.
+const fn sorted() -> [(u128, Keyword); WORDS.len()] {
+    let mut sorted = [(0, Keyword::Begin); WORDS.len()];
+    let mut filled = 0;
+    while filled < WORDS.len() {
+        let word = pack(WORDS[filled].0.as_bytes());
+        let mut place = filled;
+        while place > 0 && sorted[place - 1].0 > word {
+            sorted[place] = sorted[place - 1];
+            place -= 1;
+        }
+        sorted[place] = (word, WORDS[filled].1);
+        filled += 1;
+    }
+    sorted
+}
+
 /// The keywords of a source, as they are spelt.
 pub(in crate::syntax) fn keywords() -> impl Iterator<Item = &'static str> {
     BlockKind::ALL.iter().map(|it| it.keyword()).chain(WORDS.iter().map(|it| it.0))
@@ -135,11 +153,13 @@ pub(in crate::syntax) fn keywords() -> impl Iterator<Item = &'static str> {
 
 impl Keyword {
     fn of(word: &str) -> Option<Self> {
+        static SORTED: [(u128, Keyword); WORDS.len()] = sorted();
         if !(3..=22).contains(&word.len()) {
             return None;
         }
-        if let Some((_, keyword)) = WORDS.iter().find(|(text, _)| text.eq_ignore_ascii_case(word)) {
-            return Some(*keyword);
+        let packed = pack(word.as_bytes());
+        if let Ok(at) = SORTED.binary_search_by_key(&packed, |it| it.0) {
+            return Some(SORTED[at].1);
         }
         BlockKind::of(word).map(Self::Block).or_else(|| BlockKind::of_end(word).map(Self::EndBlock))
     }
@@ -239,15 +259,20 @@ impl Grammar<'_, '_> {
     }
 
     fn block_kind(&self) -> Option<BlockKind> {
-        match self.keyword() {
+        self.block_kind_of(self.keyword())
+    }
+
+    /// The block that the keyword at hand opens.
+    fn block_kind_of(&self, keyword: Option<Keyword>) -> Option<BlockKind> {
+        match keyword {
             Some(Keyword::Block(kind)) if matches!(self.p.nth(1), Some(Ident | Address | QuotedSymbol)) => Some(kind),
             _ => None,
         }
     }
 
-    /// Whether the unit's current block or listing ends here.
-    fn at_block_boundary(&self) -> bool {
-        self.p.at_end() || matches!(self.keyword(), Some(Keyword::EndBlock(_))) || self.block_kind().is_some()
+    /// Whether the unit's current block or listing ends here, at this keyword.
+    fn is_block_boundary(&self, keyword: Option<Keyword>) -> bool {
+        self.p.at_end() || matches!(keyword, Some(Keyword::EndBlock(_))) || self.block_kind_of(keyword).is_some()
     }
 
     fn block(&mut self, kind: BlockKind) {
@@ -266,9 +291,13 @@ impl Grammar<'_, '_> {
         self.p.complete(header, BlockHeader);
 
         let mut in_body = false;
-        while !self.at_block_boundary() {
+        loop {
+            let keyword = self.keyword();
+            if self.is_block_boundary(keyword) {
+                break;
+            }
             let before = self.p.position();
-            match self.keyword() {
+            match keyword {
                 Some(Keyword::Begin) if !in_body => {
                     self.p.bump();
                     in_body = true;

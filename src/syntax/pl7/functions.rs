@@ -3,7 +3,7 @@
 //! The first volume of the manual names the functions and says what they do; where it leaves the arguments open and
 //! general PL7 usage does not settle them, the entry is open too, and no rule can complain about a number of arguments.
 
-use super::word::pack;
+use crate::syntax::packed::pack;
 
 /// How a function stands in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -404,7 +404,7 @@ const INDEX: [(u128, usize); SPELLINGS] = {
         let mut spelling = 0;
         while spelling <= FUNCTIONS[at].also.len() {
             let name = if spelling == 0 { FUNCTIONS[at].name } else { FUNCTIONS[at].also[spelling - 1] };
-            let key = pack(name);
+            let key = pack(name.as_bytes());
             let mut place = filled;
             while place > 0 && index[place - 1].0 > key {
                 index[place] = index[place - 1];
@@ -422,7 +422,7 @@ const INDEX: [(u128, usize); SPELLINGS] = {
 /// Function of that name, in any case and any of its printed spellings. `SRi` is not in the table.
 pub fn lookup(name: &str) -> Option<&'static Function> {
     static SORTED: [(u128, usize); SPELLINGS] = INDEX;
-    let key = pack(name);
+    let key = pack(name.as_bytes());
     SORTED.binary_search_by_key(&key, |it| it.0).ok().map(|at| &FUNCTIONS[SORTED[at].1])
 }
 
