@@ -57,19 +57,16 @@ impl<'t> TreeBuilder<'t> {
         self.children.push(Child::Token { raw: raw::of(kind), start, len });
     }
 
-    /// A blank or comment.
-    pub(super) fn trivia(&mut self, kind: SyntaxKind, start: u32, len: u32) {
-        // No node opens or closes between a token and the blanks behind it: they are children of one node.
-        if kind == SyntaxKind::Whitespace
-            && let Some(Child::Token { raw, len: before, .. }) = self.children.last_mut()
-            && let Some(spaced) = raw::with_spaces(*raw)
-            && self.cache.is_spaces(start, len)
-        {
-            *raw = spaced;
-            *before += len;
-            return;
+    /// Spaces behind a token that does not end with one.
+    pub(super) fn spaces(&mut self, start: u32, len: u32) {
+        // No node opens or closes between the token and these: they are children of one node.
+        match self.children.last_mut() {
+            Some(Child::Token { raw, len: before, .. }) if raw::takes_spaces(*raw) => {
+                *raw = raw::with_spaces(*raw);
+                *before += len;
+            }
+            _ => self.token(SyntaxKind::Whitespace, start, len),
         }
-        self.token(kind, start, len);
     }
 
     /// Makes a node of all children from `first` on.
@@ -107,13 +104,6 @@ impl<'t> TokenCache<'t> {
     fn new(text: &'t str) -> Self {
         let slots = (text.len() / 16).next_power_of_two().clamp(64, MOST_SLOTS);
         Self { text, slots: vec![None; slots], signs: [const { None }; 128] }
-    }
-
-    /// Whether a piece of the text, and nothing that a token before it ends with, is spaces.
-    fn is_spaces(&self, start: u32, len: u32) -> bool {
-        let before = (start as usize).checked_sub(1).and_then(|it| self.text.as_bytes().get(it));
-        let text = self.text.as_bytes().get(start as usize..(start + len) as usize).unwrap_or_default();
-        before != Some(&b' ') && text.iter().all(|it| *it == b' ')
     }
 
     #[inline]

@@ -239,10 +239,14 @@ pub(super) mod raw {
         raw.0 <= SyntaxKind::UnclosedComment as u16
     }
 
-    /// The token together with the spaces behind it; `None` for a blank, a comment and a node, and if it has spaces already.
-    pub(in crate::syntax) fn with_spaces(raw: rowan::SyntaxKind) -> Option<rowan::SyntaxKind> {
-        let is_token = !is_trivia(raw) && raw.0 < SPACED;
-        is_token.then_some(rowan::SyntaxKind(raw.0 | SPACED))
+    /// Whether it is neither a blank, a comment nor a node, and has no spaces yet.
+    pub(in crate::syntax) fn takes_spaces(raw: rowan::SyntaxKind) -> bool {
+        !is_trivia(raw) && raw.0 < SPACED
+    }
+
+    /// The token together with the spaces behind it.
+    pub(in crate::syntax) fn with_spaces(raw: rowan::SyntaxKind) -> rowan::SyntaxKind {
+        rowan::SyntaxKind(raw.0 | SPACED)
     }
 
     pub(in crate::syntax) fn has_spaces(raw: rowan::SyntaxKind) -> bool {

@@ -22,9 +22,72 @@ pub(super) const fn pack(word: &[u8]) -> u128 {
     packed & !CASE
 }
 
+/// The words of a list, to be found by binary search.
+pub(super) struct Index<const N: usize> {
+    words: [&'static str; N],
+    /// Each with its place in the list, in the order of the keys.
+    keys: [(u128, usize); N],
+}
+
+impl<const N: usize> Index<N> {
+    pub(super) const fn new(words: [&'static str; N]) -> Self {
+        let mut keys = [(0, 0); N];
+        let mut filled = 0;
+        while filled < N {
+            let key = key(words[filled].as_bytes());
+            let mut place = filled;
+            while place > 0 && keys[place - 1].0 > key {
+                keys[place] = keys[place - 1];
+                place -= 1;
+            }
+            keys[place] = (key, filled);
+            filled += 1;
+        }
+        Self { words, keys }
+    }
+
+    /// Place in the list of a word in any case.
+    pub(super) fn find(&self, word: &str) -> Option<usize> {
+        let key = key(word.as_bytes());
+        let at = self.keys[self.keys.binary_search_by_key(&key, |it| it.0).ok()?].1;
+        // The key of a long word leaves some of it out.
+        (word.len() <= 16 || self.words[at].eq_ignore_ascii_case(word)).then_some(at)
+    }
+}
+
+/// The [`Index`] of a list by the field that holds the word of each entry.
+macro_rules! index {
+    ($entries:ident, $word:tt) => {
+        $crate::syntax::packed::Index::new({
+            let (mut words, mut at) = ([""; $entries.len()], 0);
+            while at < $entries.len() {
+                words[at] = $entries[at].$word;
+                at += 1;
+            }
+            words
+        })
+    };
+}
+pub(super) use index;
+
+/// [`pack`], and of a longer word its first and last eight bytes.
+const fn key(word: &[u8]) -> u128 {
+    match (word.first_chunk::<8>(), word.last_chunk::<8>()) {
+        (Some(first), Some(last)) if word.len() > 16 => pack(first) << 64 | pack(last),
+        _ => pack(word),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::pack;
+    use super::{Index, pack};
+
+    #[test]
+    fn long_words_are_compared() {
+        let index = Index::new(["TO", "DESTINATION_CONNECTOR", "AT"]);
+        let found = ["at", "Destination_Connector", "TO", "DESTINATIVE_CONNECTOR", "OT", ""].map(|it| index.find(it));
+        assert_eq!(found, [Some(2), Some(1), Some(0), None, None, None]);
+    }
 
     #[test]
     fn words_of_all_lengths_are_told_apart() {

@@ -21,11 +21,20 @@ pub struct Token {
     pub len: u32,
 }
 
+/// A blank or comment.
+#[derive(Debug, Clone, Copy)]
+struct Trivia {
+    kind: SyntaxKind,
+    /// Whether it is spaces alone, behind a token that does not end with one.
+    is_spaces: bool,
+    len: u32,
+}
+
 /// The tokens of a text, as a lexer finds them one behind the other: those that a grammar sees, and those between.
 #[derive(Debug, Default)]
 pub(super) struct Tokens {
     significant: Vec<Significant>,
-    trivia: Vec<Token>,
+    trivia: Vec<Trivia>,
     end: u32,
     /// Whether a significant token stands on the line at hand.
     on_line: bool,
@@ -63,7 +72,7 @@ impl Tokens {
         self.end += len;
         if kind.is_trivia() {
             self.on_line &= kind != SyntaxKind::Newline;
-            self.trivia.push(Token { kind, len });
+            self.trivia.push(Trivia { kind, is_spaces: false, len });
             return;
         }
         if kind == SyntaxKind::Unknown
@@ -79,6 +88,30 @@ impl Tokens {
         self.significant.push(Significant { kind, newline_before, start, len, trivia });
     }
 
+    /// What stands behind a token that does not end with a space itself: the line feed there, or else the spaces, if
+    /// something visible in ASCII follows. They are a third of all tokens, and no affair of a lexer's state machine; other
+    /// blanks are. Gives their length and whether a line was begun.
+    #[inline]
+    pub(super) fn push_blanks(&mut self, rest: &str) -> (usize, bool) {
+        let (line_feed, rest) = match rest.as_bytes() {
+            [b' ', ..] => (0, rest.as_bytes()),
+            [b'\n', rest @ ..] => (1, rest),
+            [b'\r', b'\n', rest @ ..] => (2, rest),
+            _ => return (0, false),
+        };
+        let spaces = rest.iter().take_while(|it| **it == b' ').count();
+        let len = line_feed + spaces;
+        let (true, Ok(short)) = (rest.get(spaces).is_some_and(u8::is_ascii_graphic), u32::try_from(len)) else {
+            return (0, false);
+        };
+        let is_spaces = line_feed == 0;
+        let kind = if is_spaces { SyntaxKind::Whitespace } else { SyntaxKind::Newline };
+        self.trivia.push(Trivia { kind, is_spaces, len: short });
+        self.end += short;
+        self.on_line &= is_spaces;
+        (len, !is_spaces)
+    }
+
     /// Length of the comment that is not closed, and so ends the text.
     pub(super) fn unclosed_comment(&self) -> Option<u32> {
         self.trivia.last().filter(|it| it.kind == SyntaxKind::UnclosedComment).map(|it| it.len)
@@ -91,28 +124,9 @@ impl Tokens {
             let until = it.map_or(self.trivia.len(), |it| it.trivia as usize);
             let before = self.trivia.get(seen..until).unwrap_or_default();
             seen = until;
-            before.iter().copied().chain(it.map(|it| Token { kind: it.kind, len: it.len }))
+            let before = before.iter().map(|it| Token { kind: it.kind, len: it.len });
+            before.chain(it.map(|it| Token { kind: it.kind, len: it.len }))
         })
-    }
-}
-
-/// How many spaces stand between here and something visible in ASCII on the same line. Spaces are a third of all tokens,
-/// and no affair of a lexer's state machine; other blanks are.
-pub(super) fn spaces(rest: &str) -> usize {
-    let rest = rest.as_bytes();
-    let spaces = rest.iter().take_while(|it| **it == b' ').count();
-    if rest.get(spaces).is_some_and(u8::is_ascii_graphic) { spaces } else { 0 }
-}
-
-/// Length of a line feed and the spaces behind it, up to something visible in ASCII; 0 where anything else stands.
-pub(super) fn line_feed(rest: &str) -> usize {
-    match rest.strip_prefix('\n') {
-        Some(line) if line.starts_with(|it: char| it.is_ascii_graphic()) => 1,
-        Some(line) => match spaces(line) {
-            0 => 0,
-            indent => 1 + indent,
-        },
-        None => 0,
     }
 }
 
@@ -151,7 +165,7 @@ impl Parse {
 pub struct Parser<'t> {
     text: &'t str,
     significant: &'t [Significant],
-    trivia: &'t [Token],
+    trivia: &'t [Trivia],
     pos: usize,
     /// How many of the blanks and comments are in the tree, and where in the text the next token starts.
     built: usize,
@@ -262,7 +276,9 @@ impl<'t> Parser<'t> {
     /// Consumes the current token under another kind: contextual keywords and free text.
     pub fn bump_as(&mut self, kind: SyntaxKind) {
         if let Some(token) = self.significant.get(self.pos) {
-            self.trivia();
+            if self.offset < token.start {
+                self.trivia();
+            }
             self.builder.token(kind, token.start, token.len);
             self.offset = token.start + token.len;
             self.pos += 1;
@@ -273,7 +289,11 @@ impl<'t> Parser<'t> {
     fn trivia(&mut self) {
         let until = self.significant.get(self.pos).map_or(self.trivia.len(), |it| it.trivia as usize);
         for token in self.trivia.get(self.built..until).unwrap_or_default() {
-            self.builder.trivia(token.kind, self.offset, token.len);
+            if token.is_spaces {
+                self.builder.spaces(self.offset, token.len);
+            } else {
+                self.builder.token(token.kind, self.offset, token.len);
+            }
             self.offset += token.len;
         }
         self.built = until;

@@ -12,7 +12,10 @@ use super::parser::{Tokens, comment_length};
 enum Lexeme {
     #[regex(r"[ \t\x0B\x0C\u{85}\u{A0}\u{1680}\u{2000}-\u{200B}\u{2028}\u{2029}\u{202F}\u{205F}\u{3000}\u{FEFF}]+")]
     Whitespace,
-    #[regex(r"\r\n|\n|\r")]
+    // With the blanks and line breaks that follow: a token less a line.
+    #[regex(
+        r"[\r\n][ \t\r\n\x0B\x0C\u{85}\u{A0}\u{1680}\u{2000}-\u{200B}\u{2028}\u{2029}\u{202F}\u{205F}\u{3000}\u{FEFF}]*"
+    )]
     Newline,
     #[token("(*", comment)]
     Comment,
@@ -198,6 +201,8 @@ pub(super) fn lex(text: &str) -> Tokens {
     let mut lexer = Lexeme::lexer(text);
     while let Some(lexeme) = lexer.next() {
         tokens.push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), lexer.slice().len());
+        let (blanks, _) = tokens.push_blanks(lexer.remainder());
+        lexer.bump(blanks);
     }
     tokens
 }

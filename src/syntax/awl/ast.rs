@@ -236,15 +236,17 @@ impl<'t> Instr<'t> {
         let mut range: Option<TextRange> = None;
         let (mut in_mnemonic, mut has_error) = (true, false);
         for element in self.0.children_with_tokens() {
+            let kind = element.kind();
             match element {
-                SyntaxElement::Token(it) if it.kind().is_trivia() => {}
-                SyntaxElement::Token(it) => {
-                    in_mnemonic &= is_part_of_mnemonic(it.kind());
+                SyntaxElement::Token(it) if in_mnemonic && !kind.is_trivia() => {
+                    in_mnemonic = is_part_of_mnemonic(kind);
                     if in_mnemonic {
-                        range = Some(range.map_or(it.text_range(), |before| before.cover(it.text_range())));
+                        let own = it.text_range();
+                        range = Some(range.map_or(own, |before| before.cover(own)));
                     }
                 }
-                SyntaxElement::Node(it) => match it.kind() {
+                SyntaxElement::Token(_) => {}
+                SyntaxElement::Node(it) => match kind {
                     SyntaxKind::Operand | SyntaxKind::ArgList => {
                         in_mnemonic = false;
                         range = range.map(|before| before.cover(it.text_range()));

@@ -6,7 +6,7 @@
 use rowan::{TextRange, TextSize};
 
 use super::instruction::{self, Op, OperandRule};
-use crate::syntax::packed::pack;
+use crate::syntax::packed::{Index, index};
 use crate::syntax::{Mnemonics, Parser, SyntaxKind};
 
 use SyntaxKind::*;
@@ -129,23 +129,6 @@ const WORDS: [(&str, Keyword); 29] = [
     ("NON_RETAIN", Keyword::Flag),
 ];
 
-/// [`WORDS`] as numbers, in their order.
-const fn sorted() -> [(u128, Keyword); WORDS.len()] {
-    let mut sorted = [(0, Keyword::Begin); WORDS.len()];
-    let mut filled = 0;
-    while filled < WORDS.len() {
-        let word = pack(WORDS[filled].0.as_bytes());
-        let mut place = filled;
-        while place > 0 && sorted[place - 1].0 > word {
-            sorted[place] = sorted[place - 1];
-            place -= 1;
-        }
-        sorted[place] = (word, WORDS[filled].1);
-        filled += 1;
-    }
-    sorted
-}
-
 /// The keywords of a source, as they are spelt.
 pub(in crate::syntax) fn keywords() -> impl Iterator<Item = &'static str> {
     BlockKind::ALL.iter().map(|it| it.keyword()).chain(WORDS.iter().map(|it| it.0))
@@ -153,13 +136,12 @@ pub(in crate::syntax) fn keywords() -> impl Iterator<Item = &'static str> {
 
 impl Keyword {
     fn of(word: &str) -> Option<Self> {
-        static SORTED: [(u128, Keyword); WORDS.len()] = sorted();
+        static INDEX: Index<{ WORDS.len() }> = index!(WORDS, 0);
         if !(3..=22).contains(&word.len()) {
             return None;
         }
-        let packed = pack(word.as_bytes());
-        if let Ok(at) = SORTED.binary_search_by_key(&packed, |it| it.0) {
-            return Some(SORTED[at].1);
+        if let Some(at) = INDEX.find(word) {
+            return Some(WORDS[at].1);
         }
         BlockKind::of(word).map(Self::Block).or_else(|| BlockKind::of_end(word).map(Self::EndBlock))
     }

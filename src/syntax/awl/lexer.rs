@@ -8,7 +8,7 @@
 use logos::Logos;
 
 use crate::syntax::SyntaxKind;
-use crate::syntax::parser::{Tokens, comment_length, line_feed, spaces};
+use crate::syntax::parser::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 #[logos(extras = Extras)]
@@ -296,9 +296,8 @@ pub(super) fn lex(text: &str) -> Tokens {
             Ok(Lexeme::Semicolon) => {
                 out.push(SyntaxKind::Semicolon, 1);
                 at_start = true;
-                let line_feed = line_feed(lexer.remainder());
-                lexer.bump(line_feed);
-                out.push(SyntaxKind::Newline, line_feed);
+                let (blanks, _) = out.push_blanks(lexer.remainder());
+                lexer.bump(blanks);
                 continue;
             }
             Ok(Lexeme::Colon) => {
@@ -333,11 +332,10 @@ pub(super) fn lex(text: &str) -> Tokens {
             Ok(Lexeme::Slash) => SyntaxKind::Slash,
             Ok(Lexeme::Hash) => SyntaxKind::Hash,
         };
-        at_start = false;
         out.push(kind, lexer.slice().len());
-        let spaces = spaces(lexer.remainder());
-        lexer.bump(spaces);
-        out.push(SyntaxKind::Whitespace, spaces);
+        let (blanks, begins_line) = out.push_blanks(lexer.remainder());
+        lexer.bump(blanks);
+        at_start = begins_line;
     }
     out
 }

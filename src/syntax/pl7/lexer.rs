@@ -6,7 +6,7 @@
 use logos::{Lexer, Logos};
 
 use crate::syntax::SyntaxKind;
-use crate::syntax::parser::{Tokens, comment_length, line_feed, spaces};
+use crate::syntax::parser::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
@@ -150,13 +150,8 @@ pub(super) fn lex(text: &str) -> Tokens {
             lexer.bump(suffix);
             tokens.push(SyntaxKind::ObjectSuffix, suffix);
         }
-        // No other blank belongs to the token: something visible follows.
-        let line_feed = line_feed(lexer.remainder());
-        lexer.bump(line_feed);
-        tokens.push(SyntaxKind::Newline, line_feed);
-        let spaces = spaces(lexer.remainder());
-        lexer.bump(spaces);
-        tokens.push(SyntaxKind::Whitespace, spaces);
+        let (blanks, _) = tokens.push_blanks(lexer.remainder());
+        lexer.bump(blanks);
     }
     tokens
 }
