@@ -162,17 +162,39 @@ impl<'t> SyntaxNode<'t> {
 
     /// This node and every node below it, in the order of the text.
     pub fn descendants(self) -> impl Iterator<Item = SyntaxNode<'t>> {
-        std::iter::once(self).chain(self.descendants_with_tokens().filter_map(SyntaxElement::into_node))
+        let mut open = vec![self.children_with_tokens()];
+        let below = std::iter::from_fn(move || {
+            loop {
+                let Some(node) = open.last_mut()?.next_node() else {
+                    open.pop();
+                    continue;
+                };
+                if !node.is_leaf() {
+                    open.push(node.children_with_tokens());
+                }
+                return Some(node);
+            }
+        });
+        std::iter::once(self).chain(below)
     }
 
     /// Every token below this node, in the order of the text.
     pub fn descendant_tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> {
-        self.descendants_with_tokens().filter_map(SyntaxElement::into_token)
-    }
-
-    /// Every node and token below this node, in the order of the text: a node before what is below it.
-    fn descendants_with_tokens(self) -> Descendants<'t> {
-        Descendants { open: vec![self.children_with_tokens()], leaf: None }
+        let mut open = vec![self.children_with_tokens()];
+        std::iter::from_fn(move || {
+            loop {
+                match open.last_mut()?.next() {
+                    Some(SyntaxElement::Token(token)) => return Some(token),
+                    Some(SyntaxElement::Node(node)) => match node.green {
+                        Green::Leaf(green) => return Some(SyntaxToken { green, start: node.start, part: Part::All }),
+                        Green::Node(_) => open.push(node.children_with_tokens()),
+                    },
+                    None => {
+                        open.pop();
+                    }
+                }
+            }
+        })
     }
 }
 
@@ -337,36 +359,6 @@ impl<'t> Iterator for Children<'t> {
     #[inline]
     fn next(&mut self) -> Option<SyntaxNode<'t>> {
         self.0.next_node()
-    }
-}
-
-/// See [`SyntaxNode::descendants_with_tokens`].
-struct Descendants<'t> {
-    open: Vec<Elements<'t>>,
-    /// The token that is the node given last.
-    leaf: Option<SyntaxToken<'t>>,
-}
-
-impl<'t> Iterator for Descendants<'t> {
-    type Item = SyntaxElement<'t>;
-
-    fn next(&mut self) -> Option<SyntaxElement<'t>> {
-        if let Some(token) = self.leaf.take() {
-            return Some(SyntaxElement::Token(token));
-        }
-        loop {
-            let Some(element) = self.open.last_mut()?.next() else {
-                self.open.pop();
-                continue;
-            };
-            if let SyntaxElement::Node(node) = element {
-                match node.green {
-                    Green::Node(_) => self.open.push(node.children_with_tokens()),
-                    Green::Leaf(green) => self.leaf = Some(SyntaxToken { green, start: node.start, part: Part::All }),
-                }
-            }
-            return Some(element);
-        }
     }
 }
 

@@ -193,8 +193,8 @@ impl Machine {
     /// `Err`: what stands for a text that is no address.
     pub(super) fn address(&mut self, text: &str, range: TextRange) -> Result<ObjectId, ObjectId> {
         if !self.declared.is_empty() {
-            let root = text.split(['.', '[']).next().unwrap_or_default();
-            if self.declared.contains_key(root.to_lowercase_smolstr().as_str()) {
+            let end = text.bytes().position(|it| matches!(it, b'.' | b'[')).unwrap_or(text.len());
+            if self.declared.contains_key(text[..end].to_lowercase_smolstr().as_str()) {
                 return Ok(self.local(text, false));
             }
         }
