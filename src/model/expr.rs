@@ -344,14 +344,16 @@ impl Exprs {
 
     /// Whether a condition is made of at most so many expressions, those that it has several times counted as often.
     pub fn is_within(&self, condition: ExprId, most: usize) -> bool {
-        let mut stack = vec![condition];
+        let mut next = Some(condition);
+        let mut stack = Vec::new();
         let mut count = 0;
-        while let Some(id) = stack.pop() {
+        while let Some(id) = next {
             count += 1;
             if count > most {
                 return false;
             }
             self.get(id).operands(|it| stack.push(it));
+            next = stack.pop();
         }
         true
     }

@@ -276,6 +276,10 @@ impl<T: Copy + Default> Lists<T> {
 }
 
 impl<T> Lists<T> {
+    fn with_capacity(lists: usize, items: usize) -> Self {
+        Self { items: Vec::with_capacity(items), ends: Vec::with_capacity(lists) }
+    }
+
     /// Finishes a list, which has what was added to `items` since the last one.
     fn finish(&mut self) {
         self.ends.push(self.items.len());
@@ -356,10 +360,12 @@ impl<'t> Grid<'t> {
     }
 
     fn read(rung: Rung<'t>, layout: Layout) -> (Self, Rows) {
+        let lines = rung.rows().count();
+        let cells = lines * layout.columns() as usize;
         let mut grid = Self {
             layout,
-            placed: Vec::new(),
-            rows: Vec::new(),
+            placed: Vec::with_capacity(cells),
+            rows: Vec::with_capacity(lines),
             vertical: Vec::new(),
             inputs: Lists::default(),
             outputs: Lists::default(),
@@ -369,7 +375,7 @@ impl<'t> Grid<'t> {
             output_actuals: FxHashMap::default(),
             open_links: Vec::new(),
         };
-        let mut rows = Rows::default();
+        let mut rows = Rows { units: Lists::with_capacity(lines, cells), links: Vec::new() };
         for row in rung.rows() {
             grid.read_row(row, &mut rows);
         }
@@ -484,6 +490,8 @@ impl<'t> Grid<'t> {
             }
             heights.push(height);
         }
+        self.inputs = Lists::with_capacity(heights.len(), heights.len());
+        self.outputs = Lists::with_capacity(heights.len(), heights.len());
         let mut wires = WireNames { of_root: vec![None; points], count: 1 };
         if points > 0 {
             wires.of_root[sets.find(0)] = Some(Wire::RAIL);
@@ -636,6 +644,7 @@ impl<'t> Grid<'t> {
             grid: self,
             wire_seen: vec![false; self.wire_count()],
             placed_seen: vec![false; self.placed.len()],
+            tasks: Vec::new(),
             out: Vec::with_capacity(self.placed.len()),
         };
         // What nothing uses is what the rest is evaluated for.
@@ -645,14 +654,15 @@ impl<'t> Grid<'t> {
             }
         }
         let mut network_of: Vec<Option<usize>> = vec![None; self.placed.len()];
-        let mut networks: Vec<Vec<usize>> = Vec::new();
+        let mut sizes: Vec<usize> = Vec::new();
         for index in 0..self.placed.len() {
-            let root = sets.find(index);
-            if network_of[root].is_none() {
-                network_of[root] = Some(networks.len());
-                networks.push(Vec::new());
+            let network = *network_of[sets.find(index)].get_or_insert(sizes.len());
+            match sizes.get_mut(network) {
+                Some(size) => *size += 1,
+                None => sizes.push(1),
             }
         }
+        let mut networks: Vec<Vec<usize>> = sizes.into_iter().map(Vec::with_capacity).collect();
         for index in order.out {
             if let Some(network) = network_of[sets.find(index)] {
                 networks[network].push(index);
@@ -797,29 +807,32 @@ struct Order<'g, 't> {
     grid: &'g Grid<'t>,
     wire_seen: Vec<bool>,
     placed_seen: Vec<bool>,
+    /// A stack of its own, for a row may be as long as the text.
+    tasks: Vec<Task>,
     out: Vec<usize>,
 }
 
+enum Task {
+    Enter(usize),
+    Leave(usize),
+}
+
 impl Order<'_, '_> {
-    /// Emits an element behind all on its left. A stack of its own, for a row may be as long as the text.
+    /// Emits an element behind all on its left.
     fn visit(&mut self, element: usize) {
-        enum Task {
-            Enter(usize),
-            Leave(usize),
-        }
-        let mut tasks = vec![Task::Enter(element)];
-        while let Some(task) = tasks.pop() {
+        self.tasks.push(Task::Enter(element));
+        while let Some(task) = self.tasks.pop() {
             match task {
                 Task::Leave(it) => self.out.push(it),
                 Task::Enter(it) => {
                     if std::mem::replace(&mut self.placed_seen[it], true) {
                         continue;
                     }
-                    tasks.push(Task::Leave(it));
+                    self.tasks.push(Task::Leave(it));
                     for wire in self.grid.inputs.of(it).iter().rev() {
                         if !std::mem::replace(&mut self.wire_seen[wire.0 as usize], true) {
                             let left = self.grid.left.of(wire.0 as usize);
-                            tasks.extend(left.iter().rev().map(|it| Task::Enter(*it as usize)));
+                            self.tasks.extend(left.iter().rev().map(|it| Task::Enter(*it as usize)));
                         }
                     }
                 }

@@ -4,6 +4,8 @@ mod step5;
 
 pub use step5::parse_step5;
 
+use std::borrow::Cow;
+
 /// The value of a constant, with what its spelling says of its type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
@@ -118,7 +120,7 @@ pub fn parse_step7(text: &str) -> Result<Value, LiteralError> {
         return quoted(text);
     }
     let compact = compact(text);
-    match compact.as_str() {
+    match &*compact {
         "TRUE" => return Ok(Value::Bool(true)),
         "FALSE" => return Ok(Value::Bool(false)),
         _ => {}
@@ -157,7 +159,7 @@ pub fn parse_pl7(text: &str) -> Result<Value, LiteralError> {
         return quoted(text);
     }
     let compact = compact(text);
-    match compact.as_str() {
+    match &*compact {
         "TRUE" => return Ok(Value::Bool(true)),
         "FALSE" => return Ok(Value::Bool(false)),
         _ => {}
@@ -274,8 +276,11 @@ fn shown(text: &str) -> String {
     if chars.next().is_some() { head + "..." } else { head }
 }
 
-/// The constant without blanks, in upper case.
-fn compact(text: &str) -> String {
+/// The constant without blanks, in upper case, which nearly all are.
+fn compact(text: &str) -> Cow<'_, str> {
+    if text.bytes().all(|it| it.is_ascii_graphic() && !it.is_ascii_lowercase()) {
+        return Cow::Borrowed(text);
+    }
     text.chars().filter(|it| !it.is_whitespace()).map(|it| it.to_ascii_uppercase()).collect()
 }
 

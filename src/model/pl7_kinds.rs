@@ -126,6 +126,7 @@ impl<'t> Kinds<'t> {
         }
         for event in expr.syntax().walk() {
             if let WalkEvent::Leave(node) = event
+                && !node.is_leaf()
                 && let Some(inner) = Expr::cast(node)
                 && !matches!(inner, Expr::Name(_) | Expr::Literal(_) | Expr::Object(_))
                 && !self.known.borrow().contains_key(&node)
@@ -159,7 +160,7 @@ impl<'t> Kinds<'t> {
         let Expr::Object(it) = expr else { return None };
         let address = it.address();
         if it.syntax().is_leaf()
-            && let Some(&id) = self.model.addresses.get(&*address)
+            && let Some(id) = self.model.address(&address)
         {
             return Some(self.model.object(id).ty);
         }

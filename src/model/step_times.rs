@@ -49,7 +49,7 @@ fn names_step_time(model: &UnitModel, it: ObjectRef<'_>) -> bool {
     let address = it.address();
     match it.index() {
         Some(_) => object::pl7::parse_indexed(&address, it.suffix().as_deref()).is_ok_and(|it| is_step_time(&it)),
-        None => model.addresses.get(&*address).is_some_and(|&it| is_step_time(model.object(it))),
+        None => model.address(&address).is_some_and(|it| is_step_time(model.object(it))),
     }
 }
 

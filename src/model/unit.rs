@@ -3,10 +3,12 @@
 //! Places are ranges relative to the unit. Facts that leave the unit name places by *anchor*, an index into
 //! [`UnitModel::anchors`], so that they stay equal when code only moves.
 
+use std::hash::BuildHasher as _;
 use std::ops::Range;
 
+use hashbrown::HashTable;
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::FxBuildHasher;
 use smol_str::SmolStr;
 
 use super::chart::{Chart, CodeLanguage};
@@ -16,7 +18,7 @@ use super::expr::{ExprId, Exprs, ObjectId};
 use super::ladder::Flaw;
 use super::layout::{DataType, Elementary, Field};
 use super::literal::{LiteralError, Value};
-use super::object::{AddressError, Object};
+use super::object::{AddressError, Class, Object};
 use super::pl7_kinds::Kind;
 use super::symbols::{Remark, Symbol};
 use super::work::Network;
@@ -587,13 +589,18 @@ pub enum Section {
     Temp,
 }
 
+/// Of an object, by its text.
+pub(super) fn hash(text: &str) -> u64 {
+    FxBuildHasher.hash_one(text)
+}
+
 #[derive(Debug, Clone)]
 pub struct UnitModel {
     pub entity: Entity,
     pub language: Language,
     pub objects: Vec<Object>,
-    /// Direct objects by their address as written, where the lowering looks them up so.
-    pub addresses: FxHashMap<SmolStr, ObjectId>,
+    /// Objects by their text; most texts name one object, whatever else is to tell two apart.
+    pub(super) ids: HashTable<ObjectId>,
     pub exprs: Exprs,
     pub statements: Vec<Statement>,
     pub accesses: Vec<Access>,
@@ -650,6 +657,16 @@ pub struct UnitModel {
 impl UnitModel {
     pub fn object(&self, id: ObjectId) -> &Object {
         &self.objects[id.0 as usize]
+    }
+
+    /// The object that the unit names by an address without index.
+    pub fn address(&self, text: &str) -> Option<ObjectId> {
+        let names = |it: &ObjectId| {
+            let object = self.object(*it);
+            let is_address = !matches!(object.class, Class::Indirect | Class::Symbol | Class::LocalName);
+            is_address && !object.indexed && object.text == text
+        };
+        self.ids.find(hash(text), names).copied()
     }
 
     pub fn statement(&self, access: &Access) -> Option<&Statement> {

@@ -32,7 +32,7 @@ impl Child {
     fn is_trivia(&self) -> bool {
         match self {
             Self::Node(_) => false,
-            Self::Token { raw, .. } => raw::leaf(*raw).is_none() && raw::kind(*raw).is_trivia(),
+            Self::Token { raw, .. } => raw::is_trivia(*raw),
         }
     }
 }
@@ -57,12 +57,25 @@ impl<'t> TreeBuilder<'t> {
         self.children.push(Child::Token { raw: raw::of(kind), start, len });
     }
 
+    /// Spaces behind a token that does not end with one.
+    pub(super) fn spaces(&mut self, start: u32, len: u32) {
+        // No node opens or closes between the token and these: they are children of one node.
+        match self.children.last_mut() {
+            Some(Child::Token { raw, len: before, .. }) if raw::takes_spaces(*raw) => {
+                *raw = raw::with_spaces(*raw);
+                *before += len;
+            }
+            _ => self.token(SyntaxKind::Whitespace, start, len),
+        }
+    }
+
     /// Makes a node of all children from `first` on.
     pub(super) fn node(&mut self, kind: SyntaxKind, first: usize) {
         if let Some([Child::Token { raw, .. }]) = self.children.get_mut(first..)
             && raw::leaf(*raw).is_none()
+            && !raw::has_spaces(*raw)
         {
-            *raw = raw::of_leaf(kind, raw::kind(*raw));
+            *raw = raw::of_leaf(kind, *raw);
             return;
         }
         let first = first.min(self.children.len());
@@ -89,10 +102,11 @@ struct TokenCache<'t> {
 impl<'t> TokenCache<'t> {
     /// A cache of its own for each tree keeps its tokens together in memory; a small text needs few.
     fn new(text: &'t str) -> Self {
-        let slots = (text.len() / 8).next_power_of_two().clamp(64, MOST_SLOTS);
+        let slots = (text.len() / 16).next_power_of_two().clamp(64, MOST_SLOTS);
         Self { text, slots: vec![None; slots], signs: [const { None }; 128] }
     }
 
+    #[inline]
     fn element(&mut self, child: Child) -> NodeOrToken<GreenNode, GreenToken> {
         match child {
             Child::Node(it) => NodeOrToken::Node(it),
@@ -101,49 +115,58 @@ impl<'t> TokenCache<'t> {
     }
 
     fn token(&mut self, raw: rowan::SyntaxKind, start: u32, len: u32) -> GreenToken {
-        let text = &self.text[start as usize..(start + len) as usize];
-        if let [byte @ 0..128] = text.as_bytes() {
+        let range = start as usize..(start + len) as usize;
+        let text = &self.text.as_bytes()[range.clone()];
+        let new = || GreenToken::new(raw, &self.text[range]);
+        if let [byte @ 0..128] = text {
             let slot = &mut self.signs[usize::from(*byte)];
             return match slot {
                 Some(it) if it.kind() == raw => it.clone(),
-                _ => slot.insert(GreenToken::new(raw, text)).clone(),
+                _ => slot.insert(new()).clone(),
             };
         }
         if text.len() > LONGEST_CACHED {
-            return GreenToken::new(raw, text);
+            return new();
         }
-        let slot = hash(raw, text.as_bytes()) & (self.slots.len() - 1);
+        let words = words(text);
+        let slot = hash(raw, text.len(), words) & (self.slots.len() - 1);
         let slot = &mut self.slots[slot];
         match slot {
-            Some(it) if it.kind() == raw && it.text() == text => it.clone(),
-            _ => slot.insert(GreenToken::new(raw, text)).clone(),
+            Some(it)
+                if it.kind() == raw && it.text().len() == text.len() && self::words(it.text().as_bytes()) == words =>
+            {
+                it.clone()
+            }
+            _ => slot.insert(new()).clone(),
         }
     }
 }
 
-/// Of up to 24 bytes; its low bits are mixed.
-fn hash(raw: rowan::SyntaxKind, text: &[u8]) -> usize {
-    const MULTIPLIER: u64 = 0x9E37_79B9_7F4A_7C15;
-    let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(MULTIPLIER).rotate_left(29);
-    let mut hash = u64::from(raw.0) ^ (text.len() as u64) << 16;
-    // The pieces may overlap: together they are all of the text.
+/// All of up to 24 bytes: texts of one length are equal when these are. The pieces may overlap.
+fn words(text: &[u8]) -> [u64; 3] {
     match (text.first_chunk::<8>(), text.last_chunk::<8>()) {
         (Some(first), Some(last)) => {
-            hash = mix(hash, u64::from_le_bytes(*first));
-            if let Some(middle) = text.get(8..16).and_then(<[u8]>::first_chunk) {
-                hash = mix(hash, u64::from_le_bytes(*middle));
+            let middle = text.get(8..16).and_then(<[u8]>::first_chunk).map_or(0, |it| u64::from_le_bytes(*it));
+            [u64::from_le_bytes(*first), middle, u64::from_le_bytes(*last)]
+        }
+        _ => match (text.first_chunk::<4>(), text.last_chunk::<4>()) {
+            (Some(first), Some(last)) => {
+                [u64::from(u32::from_le_bytes(*first)) << 32 | u64::from(u32::from_le_bytes(*last)), 0, 0]
             }
-            hash = mix(hash, u64::from_le_bytes(*last));
-        }
-        _ => {
-            let word = match (text.first_chunk::<4>(), text.last_chunk::<4>()) {
-                (Some(first), Some(last)) => {
-                    u64::from(u32::from_le_bytes(*first)) << 32 | u64::from(u32::from_le_bytes(*last))
-                }
-                _ => text.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)),
-            };
-            hash = mix(hash, word);
-        }
+            _ => match *text {
+                [a, b] => [u64::from(u16::from_le_bytes([a, b])), 0, 0],
+                [a, b, c] => [u64::from(u32::from_le_bytes([a, b, c, 0])), 0, 0],
+                _ => [text.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)), 0, 0],
+            },
+        },
     }
-    (hash >> 20) as usize
+}
+
+/// Its low bits are mixed.
+fn hash(raw: rowan::SyntaxKind, len: usize, [first, middle, last]: [u64; 3]) -> usize {
+    const MULTIPLIERS: [u64; 3] = [0x9E37_79B9_7F4A_7C15, 0xC2B2_AE3D_27D4_EB4F, 0x1656_67B1_9E37_79F9];
+    let [a, b, c] = MULTIPLIERS;
+    let own = u64::from(raw.0) ^ (len as u64) << 16;
+    let mixed = (first ^ own).wrapping_mul(a) ^ middle.wrapping_mul(b) ^ last.wrapping_mul(c);
+    (mixed >> 40) as usize
 }

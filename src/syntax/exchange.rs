@@ -10,7 +10,7 @@ use SyntaxKind::{
 use logos::{Lexer, Logos};
 
 use super::parser::Tokens;
-use super::{AstNode, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken, Token};
+use super::{AstNode, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
@@ -97,7 +97,7 @@ fn unclosed_length(text: &str) -> usize {
     if before.len() < key.len() && value.len() < before.len() && value.len() > 1 { value.len() } else { text.len() }
 }
 
-fn lex(text: &str) -> Vec<Token> {
+fn lex(text: &str) -> Tokens {
     let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut offset = 0;
     // A value without closing quote is cut back, after which the lexer goes on inside its token.
@@ -116,7 +116,7 @@ fn lex(text: &str) -> Vec<Token> {
             }
         }
     }
-    tokens.finish()
+    tokens
 }
 
 /// Parses the text around programs. Total and linear for every text; nothing in it is an error.

@@ -212,24 +212,55 @@ impl SyntaxKind {
 }
 
 /// The number of a kind in a green tree. A node that holds one token and nothing else is stored as that token, with the
-/// kind of the node in the high byte: half of all nodes are such, and cost no memory of their own then.
+/// kind of the node in the high byte: half of all nodes are such, and cost no memory of their own then. A token is stored
+/// with the spaces behind it, where both stand in one node: blanks are two of five tokens. Its number has [`SPACED`].
 pub(super) mod raw {
     use super::{KINDS, SyntaxKind};
 
     const _: () = assert!(KINDS.len() <= 256, "a kind fits a byte");
     const _: () = assert!(SyntaxKind::Whitespace as u16 == 0, "no node has the number that says there is none");
+    const _: () = assert!(SyntaxKind::UnclosedComment as u16 == 3, "blanks and comments come first");
+    const _: () = assert!((SyntaxKind::Root as u16) < SPACED, "tokens come before nodes and leave a bit free");
+
+    /// Of a token that is stored with the spaces behind it.
+    const SPACED: u16 = 0x80;
 
     pub(in crate::syntax) fn of(kind: SyntaxKind) -> rowan::SyntaxKind {
         rowan::SyntaxKind(kind as u16)
     }
 
-    pub(in crate::syntax) fn of_leaf(node: SyntaxKind, token: SyntaxKind) -> rowan::SyntaxKind {
-        rowan::SyntaxKind((node as u16) << 8 | token as u16)
+    /// A node that holds this token and nothing else.
+    pub(in crate::syntax) fn of_leaf(node: SyntaxKind, token: rowan::SyntaxKind) -> rowan::SyntaxKind {
+        rowan::SyntaxKind((node as u16) << 8 | token.0)
     }
 
-    /// Kind of the node or token itself.
-    pub(in crate::syntax) fn kind(raw: rowan::SyntaxKind) -> SyntaxKind {
-        KINDS.get(usize::from(raw.0 & 0xFF)).copied().unwrap_or(SyntaxKind::Error)
+    /// Whether it is a token that is neither seen by a grammar nor a node.
+    pub(in crate::syntax) fn is_trivia(raw: rowan::SyntaxKind) -> bool {
+        raw.0 <= SyntaxKind::UnclosedComment as u16
+    }
+
+    /// Whether it is neither a blank, a comment nor a node, and has no spaces yet.
+    pub(in crate::syntax) fn takes_spaces(raw: rowan::SyntaxKind) -> bool {
+        !is_trivia(raw) && raw.0 < SPACED
+    }
+
+    /// The token together with the spaces behind it.
+    pub(in crate::syntax) fn with_spaces(raw: rowan::SyntaxKind) -> rowan::SyntaxKind {
+        rowan::SyntaxKind(raw.0 | SPACED)
+    }
+
+    pub(in crate::syntax) fn has_spaces(raw: rowan::SyntaxKind) -> bool {
+        raw.0 & SPACED != 0
+    }
+
+    /// Kind of a node that is stored as one.
+    pub(in crate::syntax) fn node(raw: rowan::SyntaxKind) -> SyntaxKind {
+        KINDS.get(usize::from(raw.0)).copied().unwrap_or(SyntaxKind::Error)
+    }
+
+    /// Kind of a token.
+    pub(in crate::syntax) fn token(raw: rowan::SyntaxKind) -> SyntaxKind {
+        KINDS.get(usize::from(raw.0 & (SPACED - 1))).copied().unwrap_or(SyntaxKind::Error)
     }
 
     /// Kind of the node that is stored as its one token.

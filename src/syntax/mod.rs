@@ -9,6 +9,7 @@ use rowan::TextRange;
 mod builder;
 mod kind;
 mod node;
+mod packed;
 mod parser;
 
 pub mod awl;
@@ -22,7 +23,8 @@ pub mod xref;
 
 pub use kind::SyntaxKind;
 pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
-pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError, Token};
+use parser::Tokens;
+pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError};
 
 /// Mnemonic set of a Siemens program: the same word means different things in the two (`SE`, `A`, `AD`, `E`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -108,9 +110,9 @@ pub fn parse(language: Language, text: &str) -> Parse {
 
 /// The tree of text in a language that is not read: one error node, and where that is an error, its place and message.
 pub fn opaque(text: &str, error: Option<(TextRange, &str)>) -> Parse {
-    let len = u32::try_from(text.len()).unwrap_or(u32::MAX);
-    let tokens: &[Token] = &[Token { kind: SyntaxKind::Unknown, len }];
-    let mut parser = Parser::new(text, if text.is_empty() { &[] } else { tokens });
+    let mut tokens = Tokens::default();
+    tokens.push(SyntaxKind::Unknown, text.len());
+    let mut parser = Parser::new(text, &tokens);
     let node = parser.start();
     parser.bump();
     parser.complete(node, SyntaxKind::Error);

@@ -32,7 +32,17 @@ enum Green<'t> {
 #[derive(Clone, Copy)]
 pub struct SyntaxToken<'t> {
     green: &'t GreenTokenData,
+    /// Where what is stored begins.
     start: TextSize,
+    part: Part,
+}
+
+/// What of a stored token a token is: one with the spaces behind it is two.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Part {
+    All,
+    BeforeSpaces,
+    Spaces,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -67,7 +77,7 @@ impl Hash for SyntaxNode<'_> {
 
 impl PartialEq for SyntaxToken<'_> {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.green, other.green) && self.start == other.start
+        std::ptr::eq(self.green, other.green) && self.start == other.start && self.part == other.part
     }
 }
 
@@ -77,6 +87,7 @@ impl Hash for SyntaxToken<'_> {
     fn hash<H: Hasher>(&self, state: &mut H) {
         std::ptr::from_ref(self.green).hash(state);
         self.start.hash(state);
+        self.part.hash(state);
     }
 }
 
@@ -87,7 +98,7 @@ impl<'t> SyntaxNode<'t> {
 
     pub fn kind(self) -> SyntaxKind {
         match self.green {
-            Green::Node(it) => raw::kind(it.kind()),
+            Green::Node(it) => raw::node(it.kind()),
             Green::Leaf(it) => raw::leaf(it.kind()).unwrap_or(SyntaxKind::Error),
         }
     }
@@ -122,16 +133,16 @@ impl<'t> SyntaxNode<'t> {
 
     pub fn children_with_tokens(self) -> Elements<'t> {
         match self.green {
-            Green::Node(it) => Elements { raw: Some(it.children()), only: None, start: self.start },
+            Green::Node(it) => Elements { raw: Some(it.children()), next: None, start: self.start },
             Green::Leaf(green) => {
-                let only = Some(SyntaxToken { green, start: self.start });
-                Elements { raw: None, only, start: self.start }
+                let next = Some(SyntaxToken { green, start: self.start, part: Part::All });
+                Elements { raw: None, next, start: self.start }
             }
         }
     }
 
     pub fn children(self) -> impl Iterator<Item = SyntaxNode<'t>> + Clone {
-        self.children_with_tokens().filter_map(SyntaxElement::into_node)
+        Children(self.children_with_tokens())
     }
 
     /// The node's own tokens, blanks and comments too.
@@ -151,17 +162,38 @@ impl<'t> SyntaxNode<'t> {
 
     /// This node and every node below it, in the order of the text.
     pub fn descendants(self) -> impl Iterator<Item = SyntaxNode<'t>> {
-        self.walk().filter_map(|it| match it {
-            WalkEvent::Enter(node) => Some(node),
-            WalkEvent::Token(_) | WalkEvent::Leave(_) => None,
-        })
+        let mut open = vec![self.children_with_tokens()];
+        let below = std::iter::from_fn(move || {
+            loop {
+                let Some(node) = open.last_mut()?.next_node() else {
+                    open.pop();
+                    continue;
+                };
+                if !node.is_leaf() {
+                    open.push(node.children_with_tokens());
+                }
+                return Some(node);
+            }
+        });
+        std::iter::once(self).chain(below)
     }
 
     /// Every token below this node, in the order of the text.
     pub fn descendant_tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> {
-        self.walk().filter_map(|it| match it {
-            WalkEvent::Token(token) => Some(token),
-            WalkEvent::Enter(_) | WalkEvent::Leave(_) => None,
+        let mut open = vec![self.children_with_tokens()];
+        std::iter::from_fn(move || {
+            loop {
+                match open.last_mut()?.next() {
+                    Some(SyntaxElement::Token(token)) => return Some(token),
+                    Some(SyntaxElement::Node(node)) => match node.green {
+                        Green::Leaf(green) => return Some(SyntaxToken { green, start: node.start, part: Part::All }),
+                        Green::Node(_) => open.push(node.children_with_tokens()),
+                    },
+                    None => {
+                        open.pop();
+                    }
+                }
+            }
         })
     }
 }
@@ -188,17 +220,38 @@ impl fmt::Debug for SyntaxNode<'_> {
 }
 
 impl<'t> SyntaxToken<'t> {
+    #[inline]
     pub fn kind(self) -> SyntaxKind {
-        raw::kind(self.green.kind())
+        match self.part {
+            Part::All | Part::BeforeSpaces => raw::token(self.green.kind()),
+            Part::Spaces => SyntaxKind::Whitespace,
+        }
     }
 
+    #[inline]
     pub fn text(self) -> &'t str {
-        self.green.text()
+        let text = self.green.text();
+        match self.part {
+            Part::All => text,
+            Part::BeforeSpaces => &text[..before_spaces(text)],
+            Part::Spaces => &text[before_spaces(text)..],
+        }
     }
 
+    #[inline]
     pub fn text_range(self) -> TextRange {
-        TextRange::at(self.start, self.green.text_len())
+        let text = self.green.text();
+        let parted = || TextSize::of(&text[..before_spaces(text)]);
+        match self.part {
+            Part::All => TextRange::at(self.start, self.green.text_len()),
+            Part::BeforeSpaces => TextRange::at(self.start, parted()),
+            Part::Spaces => TextRange::new(self.start + parted(), self.start + self.green.text_len()),
+        }
     }
+}
+
+fn before_spaces(text: &str) -> usize {
+    text.bytes().rposition(|it| it != b' ').map_or(0, |it| it + 1)
 }
 
 impl fmt::Debug for SyntaxToken<'_> {
@@ -233,9 +286,10 @@ impl<'t> SyntaxElement<'t> {
 /// Children of a node with their places.
 #[derive(Debug, Clone)]
 pub struct Elements<'t> {
+    /// `None` of a node that is stored as its one token.
     raw: Option<rowan::Children<'t>>,
-    /// Of a node that is stored as its one token.
-    only: Option<SyntaxToken<'t>>,
+    /// What comes before the rest: that one token, or the spaces that are stored with the token given last.
+    next: Option<SyntaxToken<'t>>,
     start: TextSize,
 }
 
@@ -244,25 +298,69 @@ impl<'t> Iterator for Elements<'t> {
 
     #[inline]
     fn next(&mut self) -> Option<SyntaxElement<'t>> {
-        let Some(raw) = &mut self.raw else { return self.only.take().map(SyntaxElement::Token) };
+        if let Some(token) = self.next.take() {
+            return Some(SyntaxElement::Token(token));
+        }
         let start = self.start;
-        Some(match raw.next()? {
+        Some(match self.raw.as_mut()?.next()? {
             NodeOrToken::Node(it) => {
                 self.start += it.text_len();
                 SyntaxElement::Node(SyntaxNode { green: Green::Node(it), start })
             }
             NodeOrToken::Token(green) => {
                 self.start += green.text_len();
-                match raw::leaf(green.kind()) {
-                    Some(_) => SyntaxElement::Node(SyntaxNode { green: Green::Leaf(green), start }),
-                    None => SyntaxElement::Token(SyntaxToken { green, start }),
+                let raw = green.kind();
+                if raw::leaf(raw).is_some() {
+                    return Some(SyntaxElement::Node(SyntaxNode { green: Green::Leaf(green), start }));
                 }
+                if !raw::has_spaces(raw) {
+                    return Some(SyntaxElement::Token(SyntaxToken { green, start, part: Part::All }));
+                }
+                self.next = Some(SyntaxToken { green, start, part: Part::Spaces });
+                SyntaxElement::Token(SyntaxToken { green, start, part: Part::BeforeSpaces })
             }
         })
     }
 }
 
 impl FusedIterator for Elements<'_> {}
+
+impl<'t> Elements<'t> {
+    /// The next that is a node: what tokens are is not looked at.
+    #[inline]
+    fn next_node(&mut self) -> Option<SyntaxNode<'t>> {
+        self.next = None;
+        let raw = self.raw.as_mut()?;
+        loop {
+            let start = self.start;
+            match raw.next()? {
+                NodeOrToken::Node(it) => {
+                    self.start += it.text_len();
+                    return Some(SyntaxNode { green: Green::Node(it), start });
+                }
+                NodeOrToken::Token(green) => {
+                    self.start += green.text_len();
+                    if raw::leaf(green.kind()).is_some() {
+                        return Some(SyntaxNode { green: Green::Leaf(green), start });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// See [`SyntaxNode::children`].
+#[derive(Debug, Clone)]
+struct Children<'t>(Elements<'t>);
+
+impl<'t> Iterator for Children<'t> {
+    type Item = SyntaxNode<'t>;
+
+    #[inline]
+    fn next(&mut self) -> Option<SyntaxNode<'t>> {
+        self.0.next_node()
+    }
+}
 
 /// A step of [`SyntaxNode::walk`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -350,7 +448,7 @@ impl<'t, N: AstNode<'t>> Iterator for AstChildren<'t, N> {
     type Item = N;
 
     fn next(&mut self) -> Option<N> {
-        self.elements.by_ref().filter_map(SyntaxElement::into_node).find_map(N::cast)
+        std::iter::from_fn(|| self.elements.next_node()).find_map(N::cast)
     }
 }
 

@@ -21,13 +21,46 @@ pub struct Token {
     pub len: u32,
 }
 
-/// The tokens of a text, as a lexer finds them one behind the other.
+/// A blank or comment.
+#[derive(Debug, Clone, Copy)]
+struct Trivia {
+    kind: SyntaxKind,
+    /// Whether it is spaces alone, behind a token that does not end with one.
+    is_spaces: bool,
+    len: u32,
+}
+
+/// The tokens of a text, as a lexer finds them one behind the other: those that a grammar sees, and those between.
 #[derive(Debug, Default)]
-pub(super) struct Tokens(Vec<Token>);
+pub(super) struct Tokens {
+    significant: Vec<Significant>,
+    trivia: Vec<Trivia>,
+    end: u32,
+    /// Whether a significant token stands on the line at hand.
+    on_line: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Significant {
+    kind: SyntaxKind,
+    newline_before: bool,
+    start: u32,
+    len: u32,
+    /// How many of the blanks and comments of the text stand before it.
+    trivia: u32,
+}
+
+impl Significant {
+    fn range(&self) -> TextRange {
+        TextRange::at(TextSize::new(self.start), TextSize::new(self.len))
+    }
+}
 
 impl Tokens {
+    /// Room for so many tokens, of which half are blanks.
     pub(super) fn with_capacity(tokens: usize) -> Self {
-        Self(Vec::with_capacity(tokens))
+        let (significant, trivia) = (Vec::with_capacity(tokens * 2 / 3 + 1), Vec::with_capacity(tokens / 2 + 1));
+        Self { significant, trivia, end: 0, on_line: false }
     }
 
     /// Nothing for an empty token; runs of unknown characters become one.
@@ -35,23 +68,73 @@ impl Tokens {
     pub(super) fn push(&mut self, kind: SyntaxKind, len: usize) {
         // Units are below 4 GiB: the source layer reads no larger file.
         let Some(len) = u32::try_from(len).ok().filter(|&it| it > 0) else { return };
-        match self.0.last_mut() {
-            Some(last) if kind == SyntaxKind::Unknown && last.kind == kind => last.len += len,
-            _ => self.0.push(Token { kind, len }),
+        let start = self.end;
+        self.end += len;
+        if kind.is_trivia() {
+            self.on_line &= kind != SyntaxKind::Newline;
+            self.trivia.push(Trivia { kind, is_spaces: false, len });
+            return;
         }
+        if kind == SyntaxKind::Unknown
+            && let Some(last) = self.significant.last_mut()
+            && last.kind == kind
+            && last.start + last.len == start
+        {
+            last.len += len;
+            return;
+        }
+        let trivia = u32::try_from(self.trivia.len()).unwrap_or(u32::MAX);
+        let newline_before = !std::mem::replace(&mut self.on_line, true);
+        self.significant.push(Significant { kind, newline_before, start, len, trivia });
     }
 
-    pub(super) fn finish(self) -> Vec<Token> {
-        self.0
+    /// What stands behind a token that does not end with a space itself: the line feed there, or else the spaces, if
+    /// something visible in ASCII follows. They are a third of all tokens, and no affair of a lexer's state machine; other
+    /// blanks are. Gives their length and whether a line was begun.
+    #[inline]
+    pub(super) fn push_blanks(&mut self, rest: &str) -> (usize, bool) {
+        let (line_feed, rest) = match rest.as_bytes() {
+            [b' ', ..] => (0, rest.as_bytes()),
+            [b'\n', rest @ ..] => (1, rest),
+            [b'\r', b'\n', rest @ ..] => (2, rest),
+            _ => return (0, false),
+        };
+        let spaces = rest.iter().take_while(|it| **it == b' ').count();
+        let len = line_feed + spaces;
+        let (true, Ok(short)) = (rest.get(spaces).is_some_and(u8::is_ascii_graphic), u32::try_from(len)) else {
+            return (0, false);
+        };
+        let is_spaces = line_feed == 0;
+        let kind = if is_spaces { SyntaxKind::Whitespace } else { SyntaxKind::Newline };
+        self.trivia.push(Trivia { kind, is_spaces, len: short });
+        self.end += short;
+        self.on_line &= is_spaces;
+        (len, !is_spaces)
+    }
+
+    /// Length of the comment that is not closed, and so ends the text.
+    pub(super) fn unclosed_comment(&self) -> Option<u32> {
+        self.trivia.last().filter(|it| it.kind == SyntaxKind::UnclosedComment).map(|it| it.len)
+    }
+
+    /// All tokens in order.
+    pub(super) fn iter(&self) -> impl Iterator<Item = Token> {
+        let mut seen = 0;
+        self.significant.iter().map(Some).chain([None]).flat_map(move |it| {
+            let until = it.map_or(self.trivia.len(), |it| it.trivia as usize);
+            let before = self.trivia.get(seen..until).unwrap_or_default();
+            seen = until;
+            let before = before.iter().map(|it| Token { kind: it.kind, len: it.len });
+            before.chain(it.map(|it| Token { kind: it.kind, len: it.len }))
+        })
     }
 }
 
-/// How many spaces stand between here and something visible in ASCII on the same line. Spaces are a third of all tokens,
-/// and no affair of a lexer's state machine; other blanks are.
-pub(super) fn spaces(rest: &str) -> usize {
+/// Length of a comment that started before, with its `*)`; `None` where that is missing.
+pub(super) fn comment_length(rest: &str) -> Option<usize> {
     let rest = rest.as_bytes();
-    let spaces = rest.iter().take_while(|it| **it == b' ').count();
-    if rest.get(spaces).is_some_and(u8::is_ascii_graphic) { spaces } else { 0 }
+    let is_end = |at: &usize| at.checked_sub(1).is_some_and(|star| rest[star] == b'*');
+    memchr::memchr_iter(b')', rest).find(is_end).map(|it| it + 1)
 }
 
 /// A place that the grammar does not allow, with what was expected. The range is relative to the unit.
@@ -79,20 +162,12 @@ impl Parse {
     }
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Significant {
-    kind: SyntaxKind,
-    start: u32,
-    len: u32,
-    newline_before: bool,
-}
-
 pub struct Parser<'t> {
     text: &'t str,
-    tokens: &'t [Token],
-    significant: Vec<Significant>,
+    significant: &'t [Significant],
+    trivia: &'t [Trivia],
     pos: usize,
-    /// How many of the tokens are in the tree, and where in the text the next one starts.
+    /// How many of the blanks and comments are in the tree, and where in the text the next token starts.
     built: usize,
     offset: u32,
     builder: TreeBuilder<'t>,
@@ -109,23 +184,24 @@ pub struct Marker(usize);
 pub struct Completed(usize);
 
 impl<'t> Parser<'t> {
-    pub fn new(text: &'t str, tokens: &'t [Token]) -> Self {
-        let mut significant = Vec::with_capacity(tokens.len() * 2 / 3 + 1);
-        let mut start = 0;
-        let mut newline_before = true;
-        for token in tokens {
-            match token.kind {
-                SyntaxKind::Newline => newline_before = true,
-                kind if kind.is_trivia() => {}
-                kind => {
-                    significant.push(Significant { kind, start, len: token.len, newline_before });
-                    newline_before = false;
-                }
-            }
-            start += token.len;
+    pub(super) fn new(text: &'t str, tokens: &'t Tokens) -> Self {
+        Self {
+            text,
+            significant: &tokens.significant,
+            trivia: &tokens.trivia,
+            pos: 0,
+            built: 0,
+            offset: 0,
+            builder: TreeBuilder::new(text),
+            errors: Vec::new(),
+            depth: 0,
         }
-        let builder = TreeBuilder::new(text);
-        Self { text, tokens, significant, pos: 0, built: 0, offset: 0, builder, errors: Vec::new(), depth: 0 }
+    }
+
+    /// Of each token that a grammar sees, from the first on: what it is as a word.
+    pub(super) fn words<T>(&self, of: impl Fn(&str) -> Option<T>) -> Vec<Option<T>> {
+        let text = |it: &Significant| &self.text[it.start as usize..(it.start + it.len) as usize];
+        self.significant.iter().map(|it| if it.kind == SyntaxKind::Ident { of(text(it)) } else { None }).collect()
     }
 
     pub fn at_end(&self) -> bool {
@@ -199,26 +275,28 @@ impl<'t> Parser<'t> {
 
     /// Consumes the current token under another kind: contextual keywords and free text.
     pub fn bump_as(&mut self, kind: SyntaxKind) {
-        if !self.at_end() {
-            self.trivia();
-            self.token(Some(kind));
+        if let Some(token) = self.significant.get(self.pos) {
+            if self.offset < token.start {
+                self.trivia();
+            }
+            self.builder.token(kind, token.start, token.len);
+            self.offset = token.start + token.len;
             self.pos += 1;
         }
     }
 
     /// Moves blanks and comments before the current token to the tree.
     fn trivia(&mut self) {
-        while self.tokens.get(self.built).is_some_and(|it| it.kind.is_trivia()) {
-            self.token(None);
-        }
-    }
-
-    fn token(&mut self, kind: Option<SyntaxKind>) {
-        if let Some(token) = self.tokens.get(self.built) {
-            self.builder.token(kind.unwrap_or(token.kind), self.offset, token.len);
+        let until = self.significant.get(self.pos).map_or(self.trivia.len(), |it| it.trivia as usize);
+        for token in self.trivia.get(self.built..until).unwrap_or_default() {
+            if token.is_spaces {
+                self.builder.spaces(self.offset, token.len);
+            } else {
+                self.builder.token(token.kind, self.offset, token.len);
+            }
             self.offset += token.len;
-            self.built += 1;
         }
+        self.built = until;
     }
 
     pub fn eat(&mut self, kind: SyntaxKind) -> bool {
@@ -258,7 +336,7 @@ impl<'t> Parser<'t> {
     /// Range of the current token; empty, after the last significant token, at the end.
     pub fn current_range(&self) -> TextRange {
         match self.significant.get(self.pos) {
-            Some(it) => TextRange::at(TextSize::new(it.start), TextSize::new(it.len)),
+            Some(it) => it.range(),
             None => TextRange::empty(self.previous_range().end()),
         }
     }
@@ -266,7 +344,7 @@ impl<'t> Parser<'t> {
     /// Range of the token consumed last.
     pub fn previous_range(&self) -> TextRange {
         match self.pos.checked_sub(1).and_then(|it| self.significant.get(it)) {
-            Some(it) => TextRange::at(TextSize::new(it.start), TextSize::new(it.len)),
+            Some(it) => it.range(),
             None => TextRange::empty(TextSize::new(0)),
         }
     }
@@ -296,9 +374,10 @@ impl<'t> Parser<'t> {
 
     /// The tree under one [`SyntaxKind::Root`].
     pub fn finish(mut self) -> Parse {
-        while self.built < self.tokens.len() {
-            self.token(None);
+        while !self.at_end() {
+            self.bump();
         }
+        self.trivia();
         self.errors.sort_by_key(|it| (it.range.start(), it.range.end()));
         Parse { green: self.builder.finish(), errors: self.errors.into_boxed_slice() }
     }

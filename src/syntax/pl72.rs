@@ -5,14 +5,17 @@
 
 use logos::{Lexer, Logos};
 
-use super::parser::Tokens;
-use super::{SyntaxKind, Token};
+use super::SyntaxKind;
+use super::parser::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
     #[regex(r"[ \t\x0B\x0C\u{85}\u{A0}\u{1680}\u{2000}-\u{200B}\u{2028}\u{2029}\u{202F}\u{205F}\u{3000}\u{FEFF}]+")]
     Whitespace,
-    #[regex(r"\r\n|\n|\r")]
+    // With the blanks and line breaks that follow: a token less a line.
+    #[regex(
+        r"[\r\n][ \t\r\n\x0B\x0C\u{85}\u{A0}\u{1680}\u{2000}-\u{200B}\u{2028}\u{2029}\u{202F}\u{205F}\u{3000}\u{FEFF}]*"
+    )]
     Newline,
     #[token("(*", comment)]
     Comment,
@@ -110,10 +113,10 @@ same_names! {
 /// A comment ends at the first `*)`.
 fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     let rest = lexer.remainder();
-    match memchr::memmem::find(rest.as_bytes(), b"*)") {
-        Some(inner) => {
-            lexer.bump(inner + 2);
-            let inner = rest.get(..inner).unwrap_or_default();
+    match comment_length(rest) {
+        Some(length) => {
+            lexer.bump(length);
+            let inner = rest.get(..length - 2).unwrap_or_default();
             if inner.eq_ignore_ascii_case("PHRASE") {
                 Lexeme::SentenceStart
             } else if inner.eq_ignore_ascii_case("END_PHRASE") {
@@ -193,13 +196,15 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 }
 
 /// The tokens of the content of a block. Their lengths add up to the text, for every text.
-pub(super) fn lex(text: &str) -> Vec<Token> {
+pub(super) fn lex(text: &str) -> Tokens {
     let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut lexer = Lexeme::lexer(text);
     while let Some(lexeme) = lexer.next() {
         tokens.push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), lexer.slice().len());
+        let (blanks, _) = tokens.push_blanks(lexer.remainder());
+        lexer.bump(blanks);
     }
-    tokens.finish()
+    tokens
 }
 
 #[cfg(test)]
@@ -207,6 +212,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::syntax::parser::Token;
     use SyntaxKind::*;
 
     fn kinds(text: &str) -> Vec<SyntaxKind> {
@@ -223,7 +229,7 @@ mod tests {
             "w5(w10)", "%MW10.X4", "%M5", "I0.05", "W5:X12", "T0.D",
         ] {
             let len = u32::try_from(text.len()).unwrap();
-            assert_eq!(lex(text), [Token { kind: ObjectAddress, len }], "{text}");
+            assert_eq!(lex(text).iter().collect::<Vec<_>>(), [Token { kind: ObjectAddress, len }], "{text}");
         }
     }
 
@@ -294,7 +300,7 @@ mod tests {
         fn tokens_tile_the_text(text in r"([IOBWCTMRDX%L][0-9]{1,3}|[,.:()\[\]'W]|[a-zé→]|->|\(\*|\*\)| |\n|\PC){0,24}") {
             let tokens = lex(&text);
             let mut at = 0;
-            for token in &tokens {
+            for token in tokens.iter() {
                 prop_assert!(token.len > 0);
                 at += token.len as usize;
                 prop_assert!(text.is_char_boundary(at));

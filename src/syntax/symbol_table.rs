@@ -162,8 +162,7 @@ impl Rows {
 
     pub(in crate::syntax) fn parse(mut self, text: &str) -> Parse {
         self.close();
-        let tokens = self.tokens.finish();
-        let mut p = Parser::new(text, &tokens);
+        let mut p = Parser::new(text, &self.tokens);
         let mut row = None;
         for step in &self.steps {
             match *step {

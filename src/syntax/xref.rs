@@ -5,7 +5,7 @@ use super::SyntaxKind::{
     Error, FreeText, Heading, Ident, Newline, ObjectRef, Unknown, Whitespace, XrefEntry, XrefPlace,
 };
 use super::parser::Tokens;
-use super::{Parse, Parser, SyntaxKind, Token};
+use super::{Parse, Parser, SyntaxKind};
 
 /// Ways in which an entry may use its object: reads, writes, executes, writes by a function, reads and writes by one.
 pub const MODES: [&str; 5] = ["R", "W", "E", "O", "V"];
@@ -37,7 +37,7 @@ pub fn parse(text: &str) -> Parse {
 }
 
 /// Of each line: a heading or place as one token, or an object (of any form) and the word behind it.
-fn lex(text: &str) -> Vec<Token> {
+fn lex(text: &str) -> Tokens {
     let mut tokens = Tokens::default();
     let mut push = |kind: SyntaxKind, text: &str| tokens.push(kind, text.len());
     for line in text.split_inclusive('\n') {
@@ -61,7 +61,7 @@ fn lex(text: &str) -> Vec<Token> {
         push(Whitespace, behind);
         push(Newline, end);
     }
-    tokens.finish()
+    tokens
 }
 
 #[cfg(test)]

@@ -1,16 +1,15 @@
 //! What every lowering shares: objects, versions of values, paths to statements, labels and jumps.
 
-use std::hash::BuildHasher as _;
-
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use rowan::{TextRange, TextSize};
-use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Object};
+use crate::model::unit;
 use crate::model::unit::{
     Access, Call, DeadCause, Demand, DemandKind, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement,
     StatementKind, UnitModel, Unreachable,
@@ -23,8 +22,6 @@ use crate::syntax::Language;
 /// branches and ends; statements take the path of the moment.
 pub(super) struct Builder {
     pub(super) model: UnitModel,
-    /// Objects by their text; most texts name one object, whatever else is to tell two apart.
-    ids: HashTable<ObjectId>,
     /// Area of each object, interned.
     areas: FxHashMap<Area, u32>,
     area_of: Vec<u32>,
@@ -76,7 +73,7 @@ impl Builder {
             entity,
             language,
             objects: Vec::with_capacity(len / 64),
-            addresses: FxHashMap::with_capacity_and_hasher(len / 64, FxBuildHasher),
+            ids: HashTable::with_capacity(len / 64),
             exprs: Exprs::with_capacity(len / 32),
             statements: Vec::with_capacity(len / 64),
             accesses: Vec::with_capacity(len / 28),
@@ -111,7 +108,6 @@ impl Builder {
         };
         Self {
             model,
-            ids: HashTable::with_capacity(len / 64),
             areas: FxHashMap::default(),
             area_of: Vec::with_capacity(len / 64),
             writes: FxHashMap::default(),
@@ -153,10 +149,10 @@ impl Builder {
 
     pub(super) fn object(&mut self, object: Object) -> ObjectId {
         let objects = &self.model.objects;
-        let hash = |object: &Object| FxBuildHasher.hash_one(&object.text);
+        let hash = |object: &Object| unit::hash(&object.text);
         let id = ObjectId(index(objects.len()));
-        let found =
-            self.ids.entry(hash(&object), |it| objects[it.0 as usize] == object, |it| hash(&objects[it.0 as usize]));
+        let is_same = |it: &ObjectId| objects[it.0 as usize] == object;
+        let found = self.model.ids.entry(hash(&object), is_same, |it| hash(&objects[it.0 as usize]));
         match found {
             Entry::Occupied(found) => return *found.get(),
             Entry::Vacant(entry) => entry.insert(id),

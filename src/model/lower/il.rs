@@ -17,7 +17,7 @@ use crate::model::object::{self, Class, Object, Type};
 use crate::model::unit::{Leave, Mode, Oddity, OddityKind, Pin};
 use crate::syntax::pl7::ast::{self, BracketContent, IlOperand};
 use crate::syntax::pl7::instructions::{self, IlOp};
-use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode};
+use crate::syntax::{Language, SyntaxElement, SyntaxKind, SyntaxNode, SyntaxToken};
 use crate::target;
 use crate::target::pl7::block;
 
@@ -198,23 +198,24 @@ impl Lowering {
     fn instruction(&mut self, instr: &ast::IlInstr) {
         let range = instr.syntax().text_range();
         self.pl7.b.instruction(range);
-        if instr.close_parenthesis().is_some() && instr.mnemonic().is_none() {
+        let mnemonic = instr.mnemonic();
+        if mnemonic.is_none() && instr.close_parenthesis().is_some() {
             self.close(range);
             return;
         }
-        if instr.is_operation() {
+        if mnemonic.is_none() && instr.bracket().is_some() {
             self.operation(instr, range);
             return;
         }
-        let Some(op) = instr.op() else {
+        let text = mnemonic.map_or("", SyntaxToken::text);
+        let Some(op) = IlOp::of_word(text) else {
             // Not understood: it may have made a result, and used one.
             self.result = Some(self.pl7.b.exprs().opaque());
             self.test = None;
             return;
         };
-        let text = instr.mnemonic().map(|it| SmolStr::new(it.text())).unwrap_or_default();
         if !op.info().starts_sequence() && op != IlOp::OutBlk {
-            self.needs_result(range, &text);
+            self.needs_result(range, text);
         }
         match op {
             // The grammar has reported it; it is closed all the same.
@@ -247,31 +248,31 @@ impl Lowering {
                 self.result = Some(negated);
                 self.test = Some(self.test.map_or(range, |it| it.cover(range)));
             }
-            IlOp::Mps | IlOp::Mrd | IlOp::Mpp => self.stack_instruction(op, range, &text),
-            IlOp::St | IlOp::StN | IlOp::S | IlOp::R => self.store(op, instr, range, &text),
-            IlOp::In | IlOp::Cu | IlOp::Cd | IlOp::I | IlOp::O | IlOp::U => self.drive(op, instr, range, &text),
+            IlOp::Mps | IlOp::Mrd | IlOp::Mpp => self.stack_instruction(op, range, text),
+            IlOp::St | IlOp::StN | IlOp::S | IlOp::R => self.store(op, instr, range, text),
+            IlOp::In | IlOp::Cu | IlOp::Cd | IlOp::I | IlOp::O | IlOp::U => self.drive(op, instr, range, text),
             IlOp::Blk => self.open_block(instr, range),
             IlOp::OutBlk => match &mut self.block {
                 Some(block) => block.outputs = true,
-                None => self.structure(range, &text, "`OUT_BLK` stands without `BLK`"),
+                None => self.structure(range, text, "`OUT_BLK` stands without `BLK`"),
             },
             IlOp::EndBlk => {
                 if self.block.take().is_none() {
-                    self.structure(range, &text, "`END_BLK` stands without `BLK`");
+                    self.structure(range, text, "`END_BLK` stands without `BLK`");
                 }
             }
             IlOp::Jmp => {
                 self.ignored_test(range);
-                self.jump(Exprs::TRUE, instr, range, &text);
+                self.jump(Exprs::TRUE, instr, range, text);
             }
             IlOp::JmpC | IlOp::JmpCN => {
                 let when = self.used(op == IlOp::JmpCN);
-                self.jump(when, instr, range, &text);
+                self.jump(when, instr, range, text);
             }
             IlOp::Sr => {
-                self.in_parentheses(OddityKind::JumpInParentheses, range, &text);
+                self.in_parentheses(OddityKind::JumpInParentheses, range, text);
                 if let Some(number) = instr.subroutine() {
-                    self.pl7.subroutine(number, &text, Exprs::TRUE, range, range);
+                    self.pl7.subroutine(number, text, Exprs::TRUE, range, range);
                 }
                 self.test = None;
                 self.result = Some(self.pl7.b.exprs().opaque());
@@ -336,17 +337,16 @@ impl Lowering {
     // Tests.
 
     fn test_operand(&mut self, op: IlOp, instr: &ast::IlInstr) -> ExprId {
+        let modifier = instr.modifier();
+        let is_modifier = |letter: &str| modifier.is_some_and(|it| it.text().eq_ignore_ascii_case(letter));
         let edge = match op {
             IlOp::LdR | IlOp::AndR | IlOp::OrR | IlOp::XorR => Some(true),
             IlOp::LdF | IlOp::AndF | IlOp::OrF | IlOp::XorF => Some(false),
-            _ => match instr.modifier().map(|it| it.text().to_ascii_uppercase()).as_deref() {
-                Some("R") => Some(true),
-                Some("F") => Some(false),
-                _ => None,
-            },
+            _ if is_modifier("R") => Some(true),
+            _ if is_modifier("F") => Some(false),
+            _ => None,
         };
-        let negated = matches!(op, IlOp::LdN | IlOp::AndN | IlOp::OrN | IlOp::XorN)
-            || instr.modifier().is_some_and(|it| it.text().eq_ignore_ascii_case("N"));
+        let negated = matches!(op, IlOp::LdN | IlOp::AndN | IlOp::OrN | IlOp::XorN) || is_modifier("N");
         let value = match instr.operand() {
             Some(IlOperand::Object(it)) => {
                 let (object, at) = self.pl7.object_ref(&it);

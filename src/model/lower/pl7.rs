@@ -101,11 +101,10 @@ impl Pl7 {
         }
         let index = if it.syntax().is_leaf() { None } else { it.index() };
         if index.is_none()
-            && let Some(&id) = self.b.model.addresses.get(&*address)
+            && let Some(id) = self.b.model.address(&address)
         {
             return (id, range);
         }
-        let is_direct = index.is_none();
         let mut added = None;
         let parsed = match index {
             Some(index) => {
@@ -123,9 +122,6 @@ impl Pl7 {
         };
         if let Some(value) = added {
             self.b.demand(DemandKind::Index(id), value, range);
-        }
-        if is_direct {
-            self.b.model.addresses.insert(address.into(), id);
         }
         (id, range)
     }

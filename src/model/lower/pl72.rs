@@ -109,7 +109,7 @@ struct Source {
 impl Pl7 {
     /// An object of PL7-2. The read of its index is recorded.
     pub(super) fn word_object(&mut self, address: &str, range: TextRange) -> (ObjectId, TextRange) {
-        if let Some(&id) = self.b.model.addresses.get(address) {
+        if let Some(id) = self.b.model.address(address) {
             return (id, range);
         }
         let found = match pl72::parse(address) {
@@ -117,16 +117,11 @@ impl Pl7 {
             Err(error) => return (self.address_error(error, range, address), range),
         };
         let id = self.b.object(found.object);
-        match found.index {
-            Some(index) => {
-                let index = self.b.object(index);
-                self.b.read(index, range);
-                let anchor = self.b.anchor(range);
-                self.b.model.indexes.push(Index { what: IndexKind::Object(index), anchor });
-            }
-            None => {
-                self.b.model.addresses.insert(address.into(), id);
-            }
+        if let Some(index) = found.index {
+            let index = self.b.object(index);
+            self.b.read(index, range);
+            let anchor = self.b.anchor(range);
+            self.b.model.indexes.push(Index { what: IndexKind::Object(index), anchor });
         }
         (id, range)
     }

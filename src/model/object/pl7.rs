@@ -59,7 +59,8 @@ fn upper_case(address: &str) -> Cow<'_, str> {
 /// As [`parse`]; an object that has no index (PL7:1098-1119) is malformed.
 pub fn parse_indexed(base: &str, suffix: Option<&str>) -> Result<Object, AddressError> {
     let suffix = suffix.unwrap_or_default();
-    let upper = format!("{base}{suffix}").to_ascii_uppercase();
+    let upper =
+        if suffix.is_empty() { upper_case(base) } else { format!("{base}{suffix}").to_ascii_uppercase().into() };
     let place = match read(&upper) {
         Ok(place) => place,
         Err(mut error) => {
@@ -284,7 +285,8 @@ fn read(text: &str) -> Result<Place, AddressError> {
 /// What stands before `:`.
 fn base(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
     let letters = at.letters();
-    if let Some(block) = BLOCKS.iter().find(|it| it.symbol == letters) {
+    let initial = letters.as_bytes().first();
+    if let Some(block) = BLOCKS.iter().find(|it| it.symbol.as_bytes().first() == initial && it.symbol == letters) {
         return block_object(block, at);
     }
     match letters {
@@ -331,12 +333,15 @@ fn unknown_kind() -> AddressError {
 
 /// `%M10`, `%MW10`, `%KD26`, or the words that a module exchanges at the program's request: `%MW2.0.3`.
 fn internal_or_module(kind: char, format: Option<char>, ty: Type, at: &mut Cursor<'_>) -> Result<Place, AddressError> {
-    let mut ahead = Cursor { rest: at.rest };
-    let is_module = ahead.at('\\') || (ahead.number().is_some() && ahead.at('.'));
-    if is_module && ty != Type::Byte {
+    let start = at.rest;
+    if ty != Type::Byte && at.at('\\') {
         return module_object(kind, ty, at);
     }
     let number = at.need_number("number of the object")?;
+    if ty != Type::Byte && at.at('.') {
+        at.rest = start;
+        return module_object(kind, ty, at);
+    }
     let (class, area, rights) = match kind {
         'M' => (Class::Memory, Area::Words, Rights::ReadWrite),
         _ => (Class::Constant, Area::Constants, Rights::ReadOnly("PL7:588")),

@@ -82,8 +82,17 @@ pub fn translated(operand: &str, mnemonics: Mnemonics) -> Option<String> {
 /// The operand without the blanks that stand outside quotes.
 fn compact(operand: &str) -> SmolStr {
     let mut text = SmolStrBuilder::new();
-    if operand.bytes().all(|it| matches!(it, b'\t' | b' ' | b'!' | b'#'..=b'~')) {
-        operand.split_ascii_whitespace().for_each(|it| text.push_str(it));
+    let (mut is_plain, mut has_blanks) = (true, false);
+    for byte in operand.bytes() {
+        let is_blank = matches!(byte, b'\t' | b' ');
+        has_blanks |= is_blank;
+        is_plain &= is_blank || matches!(byte, b'!' | b'#'..=b'~');
+    }
+    if is_plain && !has_blanks {
+        return operand.into();
+    }
+    if is_plain {
+        operand.split([' ', '\t']).for_each(|it| text.push_str(it));
         return text.finish();
     }
     let mut quoted = false;
@@ -239,7 +248,8 @@ fn read(compact: &str, mnemonics: Mnemonics) -> Result<Place, AddressError> {
     {
         return Ok(place);
     }
-    if let Some((_, kind)) = BLOCKS.iter().find(|(name, _)| *name == letters) {
+    let initial = letters.as_bytes().first();
+    if let Some((_, kind)) = BLOCKS.iter().find(|(name, _)| name.as_bytes().first() == initial && *name == letters) {
         return block(*kind, letters, rest, compact);
     }
     let counter = letters_in("Z", "C", mnemonics);
@@ -255,7 +265,8 @@ fn read(compact: &str, mnemonics: Mnemonics) -> Result<Place, AddressError> {
     }
     for it in AREAS {
         let prefix = letters_in(it.german, it.english, mnemonics);
-        if let Some(format) = letters.strip_prefix(prefix)
+        if prefix.as_bytes().first() == initial
+            && let Some(format) = letters.strip_prefix(prefix)
             && let Some(ty) = format_type(format, it.bits)
         {
             let start = byte_and_bit(ty, rest, letters)?;

@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::instruction::{self, Op, Words};
 use crate::syntax::node::nodes;
-use crate::syntax::{AstNode as _, Mnemonics, SyntaxKind, SyntaxToken};
+use crate::syntax::{AstNode as _, Mnemonics, SyntaxElement, SyntaxKind, SyntaxToken};
 
 nodes! {
     /// The whole unit.
@@ -207,16 +207,56 @@ pub struct Mnemonic {
     pub range: TextRange,
 }
 
+/// Where an instruction stands, and whether all of it was understood.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Extent {
+    /// From the mnemonic to the last operand.
+    pub range: TextRange,
+    pub has_error: bool,
+}
+
 impl<'t> Instr<'t> {
+    /// It stands first.
     pub fn label(self) -> Option<Label<'t>> {
-        self.child()
+        Label::cast(self.0.children_with_tokens().next()?.into_node()?)
     }
 
-    /// The tokens of the mnemonic. Empty for a label alone on its line.
+    /// The tokens of the mnemonic: what stands before the first operand. Empty for a label alone on its line.
     pub fn mnemonic_tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
-        self.significant().take_while(|it| {
-            matches!(it.kind(), SyntaxKind::Ident | SyntaxKind::Operator | SyntaxKind::LParen | SyntaxKind::RParen)
-        })
+        self.0
+            .children_with_tokens()
+            .skip_while(|it| it.kind() == SyntaxKind::Label)
+            .map_while(SyntaxElement::into_token)
+            .filter(|it| !it.kind().is_trivia())
+            .take_while(|it| is_part_of_mnemonic(it.kind()))
+    }
+
+    /// `None` for a label alone on its line.
+    pub fn extent(self) -> Option<Extent> {
+        let mut range: Option<TextRange> = None;
+        let (mut in_mnemonic, mut has_error) = (true, false);
+        for element in self.0.children_with_tokens() {
+            let kind = element.kind();
+            match element {
+                SyntaxElement::Token(it) if in_mnemonic && !kind.is_trivia() => {
+                    in_mnemonic = is_part_of_mnemonic(kind);
+                    if in_mnemonic {
+                        let own = it.text_range();
+                        range = Some(range.map_or(own, |before| before.cover(own)));
+                    }
+                }
+                SyntaxElement::Token(_) => {}
+                SyntaxElement::Node(it) => match kind {
+                    SyntaxKind::Operand | SyntaxKind::ArgList => {
+                        in_mnemonic = false;
+                        range = range.map(|before| before.cover(it.text_range()));
+                    }
+                    SyntaxKind::Error => has_error = true,
+                    _ => {}
+                },
+            }
+        }
+        range.map(|range| Extent { range, has_error })
     }
 
     /// `None` for a label alone on its line.
@@ -266,6 +306,10 @@ impl<'t> Instr<'t> {
     pub fn args(self) -> impl Iterator<Item = Arg<'t>> + use<'t> {
         self.arg_list().into_iter().flat_map(|it| it.args())
     }
+}
+
+fn is_part_of_mnemonic(kind: SyntaxKind) -> bool {
+    matches!(kind, SyntaxKind::Ident | SyntaxKind::Operator | SyntaxKind::LParen | SyntaxKind::RParen)
 }
 
 impl<'t> Label<'t> {

@@ -6,6 +6,7 @@
 use rowan::{TextRange, TextSize};
 
 use super::instruction::{self, Op, OperandRule};
+use crate::syntax::packed::{Index, index};
 use crate::syntax::{Mnemonics, Parser, SyntaxKind};
 
 use SyntaxKind::*;
@@ -135,11 +136,12 @@ pub(in crate::syntax) fn keywords() -> impl Iterator<Item = &'static str> {
 
 impl Keyword {
     fn of(word: &str) -> Option<Self> {
+        static INDEX: Index<{ WORDS.len() }> = index!(WORDS, 0);
         if !(3..=22).contains(&word.len()) {
             return None;
         }
-        if let Some((_, keyword)) = WORDS.iter().find(|(text, _)| text.eq_ignore_ascii_case(word)) {
-            return Some(*keyword);
+        if let Some(at) = INDEX.find(word) {
+            return Some(WORDS[at].1);
         }
         BlockKind::of(word).map(Self::Block).or_else(|| BlockKind::of_end(word).map(Self::EndBlock))
     }
@@ -239,15 +241,20 @@ impl Grammar<'_, '_> {
     }
 
     fn block_kind(&self) -> Option<BlockKind> {
-        match self.keyword() {
+        self.block_kind_of(self.keyword())
+    }
+
+    /// The block that the keyword at hand opens.
+    fn block_kind_of(&self, keyword: Option<Keyword>) -> Option<BlockKind> {
+        match keyword {
             Some(Keyword::Block(kind)) if matches!(self.p.nth(1), Some(Ident | Address | QuotedSymbol)) => Some(kind),
             _ => None,
         }
     }
 
-    /// Whether the unit's current block or listing ends here.
-    fn at_block_boundary(&self) -> bool {
-        self.p.at_end() || matches!(self.keyword(), Some(Keyword::EndBlock(_))) || self.block_kind().is_some()
+    /// Whether the unit's current block or listing ends here, at this keyword.
+    fn is_block_boundary(&self, keyword: Option<Keyword>) -> bool {
+        self.p.at_end() || matches!(keyword, Some(Keyword::EndBlock(_))) || self.block_kind_of(keyword).is_some()
     }
 
     fn block(&mut self, kind: BlockKind) {
@@ -266,9 +273,13 @@ impl Grammar<'_, '_> {
         self.p.complete(header, BlockHeader);
 
         let mut in_body = false;
-        while !self.at_block_boundary() {
+        loop {
+            let keyword = self.keyword();
+            if self.is_block_boundary(keyword) {
+                break;
+            }
             let before = self.p.position();
-            match self.keyword() {
+            match keyword {
                 Some(Keyword::Begin) if !in_body => {
                     self.p.bump();
                     in_body = true;

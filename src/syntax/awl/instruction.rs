@@ -3,6 +3,7 @@
 //! [`lookup`] maps a mnemonic to the dialect-neutral [`Op`]; [`Op::operand`] says what may stand after it.
 
 use crate::syntax::Mnemonics;
+use crate::syntax::packed::pack;
 
 /// Number format that an arithmetic or compare instruction works on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -513,7 +514,7 @@ impl Words {
         if key >> 56 != 0 {
             return None;
         }
-        self.find(key << 8 | u64::from(last), mnemonics)
+        self.find(key << 8 | pack(&[last]) as u64, mnemonics)
     }
 
     /// The set that alone has `word`, if one does.
@@ -554,18 +555,12 @@ impl Words {
     }
 }
 
-/// The letters in upper case, packed; mnemonics are short. `None` for longer and for empty words.
+/// The word as a number; mnemonics are short. `None` for longer and for empty words.
 const fn key(word: &[u8]) -> Option<u64> {
     if word.is_empty() || word.len() > 8 {
         return None;
     }
-    let mut key = 0;
-    let mut at = 0;
-    while at < word.len() {
-        key = key << 8 | word[at].to_ascii_uppercase() as u64;
-        at += 1;
-    }
-    if key == 0 { None } else { Some(key) }
+    Some(pack(word) as u64)
 }
 
 const fn slot(key: u64) -> usize {

@@ -7,8 +7,8 @@
 
 use logos::Logos;
 
-use crate::syntax::parser::{Tokens, spaces};
-use crate::syntax::{SyntaxKind, Token};
+use crate::syntax::SyntaxKind;
+use crate::syntax::parser::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 #[logos(extras = Extras)]
@@ -159,9 +159,9 @@ struct Extras {
 /// Extends the token to the `*)`; whether there is one.
 fn block_comment(lexer: &mut logos::Lexer<'_, Lexeme>) -> bool {
     let rest = lexer.remainder();
-    let end = memchr::memmem::find(rest.as_bytes(), b"*)");
-    lexer.bump(end.map_or(rest.len(), |it| it + 2));
-    end.is_some()
+    let length = comment_length(rest);
+    lexer.bump(length.unwrap_or(rest.len()));
+    length.is_some()
 }
 
 fn attribute(lexer: &mut logos::Lexer<'_, Lexeme>) -> Option<()> {
@@ -181,7 +181,7 @@ fn attribute(lexer: &mut logos::Lexer<'_, Lexeme>) -> Option<()> {
 }
 
 /// Splits a unit into tokens, whose lengths add up to the text.
-pub(super) fn lex(text: &str) -> Vec<Token> {
+pub(super) fn lex(text: &str) -> Tokens {
     let mut out = Tokens::with_capacity(text.len() / 3);
     let mut lexer = Lexeme::lexer(text);
     // Whether the next token starts an instruction: `L 5` is one, `L L 5` has one.
@@ -296,6 +296,8 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
             Ok(Lexeme::Semicolon) => {
                 out.push(SyntaxKind::Semicolon, 1);
                 at_start = true;
+                let (blanks, _) = out.push_blanks(lexer.remainder());
+                lexer.bump(blanks);
                 continue;
             }
             Ok(Lexeme::Colon) => {
@@ -330,13 +332,12 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
             Ok(Lexeme::Slash) => SyntaxKind::Slash,
             Ok(Lexeme::Hash) => SyntaxKind::Hash,
         };
-        at_start = false;
         out.push(kind, lexer.slice().len());
-        let spaces = spaces(lexer.remainder());
-        lexer.bump(spaces);
-        out.push(SyntaxKind::Whitespace, spaces);
+        let (blanks, begins_line) = out.push_blanks(lexer.remainder());
+        lexer.bump(blanks);
+        at_start = begins_line;
     }
-    out.finish()
+    out
 }
 
 /// After a keyword: if `separator` follows on the line, the separator and the text after it.

@@ -20,7 +20,7 @@ pub mod instruction;
 #[cfg(test)]
 mod tests;
 
-use super::{Mnemonics, Parse, Parser, SyntaxKind};
+use super::{Mnemonics, Parse, Parser};
 
 pub(in crate::syntax) use grammar::keywords;
 pub use vote::vote;
@@ -30,8 +30,8 @@ pub fn parse(text: &str, mnemonics: Mnemonics) -> Parse {
     let tokens = lexer::lex(text);
     let mut parser = Parser::new(text, &tokens);
     grammar::root(&mut parser, mnemonics);
-    if let Some(last) = tokens.last().filter(|it| it.kind == SyntaxKind::UnclosedComment) {
-        grammar::unclosed_comment(&mut parser, text.len(), last.len);
+    if let Some(len) = tokens.unclosed_comment() {
+        grammar::unclosed_comment(&mut parser, text.len(), len);
     }
     parser.finish()
 }

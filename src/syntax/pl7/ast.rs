@@ -395,7 +395,8 @@ impl<'t> StmtList<'t> {
 
 impl<'t> AssignStmt<'t> {
     pub fn target(self) -> Option<Expr<'t>> {
-        if self.is_transfer() { self.behind() } else { self.before() }
+        let (before, sign, mut behind) = self.before();
+        if sign == Some(SyntaxKind::Arrow) { behind.find_map(Expr::cast) } else { before }
     }
 
     /// `:=`, or the `=` that stands in its place; `->` of PL7-2.
@@ -404,22 +405,22 @@ impl<'t> AssignStmt<'t> {
     }
 
     pub fn value(self) -> Option<Expr<'t>> {
-        if self.is_transfer() { self.before() } else { self.behind() }
+        let (before, sign, mut behind) = self.before();
+        if sign == Some(SyntaxKind::Arrow) { before } else { behind.find_map(Expr::cast) }
     }
 
-    /// Whether the target stands last: `127 -> W10`.
-    fn is_transfer(self) -> bool {
-        self.operator().is_some_and(|it| it.kind() == SyntaxKind::Arrow)
-    }
-
-    fn before(self) -> Option<Expr<'t>> {
-        let elements = self.0.children_with_tokens().take_while(|it| !is_assignment_sign(it.kind()));
-        elements.filter_map(SyntaxElement::into_node).find_map(Expr::cast)
-    }
-
-    fn behind(self) -> Option<Expr<'t>> {
-        let elements = self.0.children_with_tokens().skip_while(|it| !is_assignment_sign(it.kind()));
-        elements.filter_map(SyntaxElement::into_node).find_map(Expr::cast)
+    /// The expression before the sign, the sign, and the nodes behind it. In `127 -> W10` the target stands last.
+    fn before(self) -> (Option<Expr<'t>>, Option<SyntaxKind>, impl Iterator<Item = SyntaxNode<'t>>) {
+        let mut elements = self.0.children_with_tokens();
+        let mut expr = None;
+        let sign = elements.by_ref().find_map(|it| match it {
+            SyntaxElement::Node(node) => {
+                expr = expr.or_else(|| Expr::cast(node));
+                None
+            }
+            SyntaxElement::Token(it) => Some(it.kind()).filter(|it| is_assignment_sign(*it)),
+        });
+        (expr, sign, elements.filter_map(SyntaxElement::into_node))
     }
 }
 

@@ -3,7 +3,7 @@
 //! The first volume of the manual names the functions and says what they do; where it leaves the arguments open and
 //! general PL7 usage does not settle them, the entry is open too, and no rule can complain about a number of arguments.
 
-use super::word::pack;
+use crate::syntax::packed::{Index, index};
 
 /// How a function stands in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -395,35 +395,28 @@ const SPELLINGS: usize = {
     count
 };
 
-/// Every spelling with the place of its function in [`FUNCTIONS`], sorted.
-const INDEX: [(u128, usize); SPELLINGS] = {
-    let mut index = [(0, 0); SPELLINGS];
+/// Every spelling with the place of its function in [`FUNCTIONS`].
+const SPELT: [(&str, usize); SPELLINGS] = {
+    let mut spelt = [("", 0); SPELLINGS];
     let mut filled = 0;
     let mut at = 0;
     while at < FUNCTIONS.len() {
         let mut spelling = 0;
         while spelling <= FUNCTIONS[at].also.len() {
             let name = if spelling == 0 { FUNCTIONS[at].name } else { FUNCTIONS[at].also[spelling - 1] };
-            let key = pack(name);
-            let mut place = filled;
-            while place > 0 && index[place - 1].0 > key {
-                index[place] = index[place - 1];
-                place -= 1;
-            }
-            index[place] = (key, at);
+            spelt[filled] = (name, at);
             filled += 1;
             spelling += 1;
         }
         at += 1;
     }
-    index
+    spelt
 };
 
 /// Function of that name, in any case and any of its printed spellings. `SRi` is not in the table.
 pub fn lookup(name: &str) -> Option<&'static Function> {
-    static SORTED: [(u128, usize); SPELLINGS] = INDEX;
-    let key = pack(name);
-    SORTED.binary_search_by_key(&key, |it| it.0).ok().map(|at| &FUNCTIONS[SORTED[at].1])
+    static INDEX: Index<SPELLINGS> = index!(SPELT, 0);
+    INDEX.find(name).map(|it| &FUNCTIONS[SPELT[it].1])
 }
 
 pub fn all() -> &'static [Function] {
@@ -448,7 +441,8 @@ mod tests {
                 assert_eq!(lookup(&name.to_ascii_lowercase()), Some(function), "{name}");
             }
         }
-        assert!(INDEX.windows(2).all(|it| it[0].0 < it[1].0), "two functions share a spelling");
+        let is_first = |(at, it): (usize, &(&str, usize))| SPELT[..at].iter().all(|before| before.0 != it.0);
+        assert!(SPELT.iter().enumerate().all(is_first), "two functions share a spelling");
     }
 
     #[test]

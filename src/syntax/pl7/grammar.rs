@@ -2,7 +2,7 @@
 
 use SyntaxKind::{
     Bang, CharString, Colon, Comma, Elision, Error, Heading, Ident, LBrack, LParen, LabelAddress, LabelDef, Minus,
-    ObjectAddress, Percent, RBrack, RParen, Semicolon, Sentence, SentenceEnd, SentenceStart, UnclosedComment,
+    ObjectAddress, Percent, RBrack, RParen, Semicolon, Sentence, SentenceEnd, SentenceStart,
 };
 use rowan::TextRange;
 
@@ -78,13 +78,10 @@ fn parse_with(text: &str, dialect: Dialect, code: Code, is_chart: bool) -> Parse
         Code::Pl7 => lex(text),
         Code::Pl72 => pl72::lex(text),
     };
-    let open_end = tokens.last().is_some_and(|it| it.kind == UnclosedComment);
+    let open_end = tokens.unclosed_comment().is_some();
     let mut parser = Parser::new(text, &tokens);
-    let words: Vec<_> = (0..)
-        .map_while(|n| parser.nth(n).map(|kind| (n, kind)))
-        .map(|(n, kind)| if kind == Ident { Keyword::of(parser.nth_text(n)) } else { None })
-        .map(|word| word.filter(|it| !it.is_of_ladder() || is_chart || dialect == Dialect::Ld))
-        .collect();
+    let has_rungs = is_chart || dialect == Dialect::Ld;
+    let words = parser.words(|text| Keyword::of(text).filter(|it| has_rungs || !it.is_of_ladder()));
     let is_dfb = !is_chart && code == Code::Pl7 && dfb::is_type(&parser);
     let stops = if is_chart {
         chart::stops(&parser)

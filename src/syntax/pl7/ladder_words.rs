@@ -8,6 +8,8 @@
 //! block is `BLOCK(Instance)` of three columns, its first pin in its first row, and such a cell is
 //! `EFFECTIVE_PARAMETER(%MW10)`, left of the block for inputs and in/outs, right of it for outputs.
 
+use crate::syntax::packed::{Index, index};
+
 /// What stands in the parentheses behind a word, or up to the `END_BLOCK` of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shape {
@@ -173,7 +175,8 @@ pub fn all() -> &'static [Word] {
 
 /// The word of that spelling, in any case.
 pub fn lookup(text: &str) -> Option<&'static Word> {
-    WORDS.iter().find(|it| it.text.eq_ignore_ascii_case(text))
+    static INDEX: Index<{ WORDS.len() }> = index!(WORDS, text);
+    INDEX.find(text).map(|it| &WORDS[it])
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@
 
 use logos::{Lexer, Logos};
 
-use crate::syntax::parser::{Tokens, spaces};
-use crate::syntax::{SyntaxKind, Token};
+use crate::syntax::SyntaxKind;
+use crate::syntax::parser::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
@@ -122,12 +122,12 @@ same_names! {
 /// A comment ends at the first `*)`, because comments do not nest (PL7:3549).
 fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     let rest = lexer.remainder();
-    let Some(inner) = memchr::memmem::find(rest.as_bytes(), b"*)") else {
+    let Some(length) = comment_length(rest) else {
         lexer.bump(rest.len());
         return Lexeme::UnclosedComment;
     };
-    lexer.bump(inner + 2);
-    let inner = &rest[..inner];
+    lexer.bump(length);
+    let inner = &rest[..length - 2];
     if inner.eq_ignore_ascii_case("PHRASE") {
         Lexeme::SentenceStart
     } else if inner.eq_ignore_ascii_case("END_PHRASE") {
@@ -138,7 +138,7 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 }
 
 /// The lengths of the tokens add up to the text, for every text.
-pub(super) fn lex(text: &str) -> Vec<Token> {
+pub(super) fn lex(text: &str) -> Tokens {
     let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut lexer = Lexeme::lexer(text);
     while let Some(lexeme) = lexer.next() {
@@ -150,11 +150,10 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
             lexer.bump(suffix);
             tokens.push(SyntaxKind::ObjectSuffix, suffix);
         }
-        let spaces = spaces(lexer.remainder());
-        lexer.bump(spaces);
-        tokens.push(SyntaxKind::Whitespace, spaces);
+        let (blanks, _) = tokens.push_blanks(lexer.remainder());
+        lexer.bump(blanks);
     }
-    tokens.finish()
+    tokens
 }
 
 /// Length of `:10`, `:X4`, and after an index also `.T` or `.T:8`; 0 if there is none.
@@ -175,6 +174,7 @@ fn suffix_length(rest: &[u8], after_index: bool) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::syntax::parser::Token;
     use SyntaxKind::*;
 
     fn kinds(text: &str) -> Vec<SyntaxKind> {
@@ -234,7 +234,8 @@ mod tests {
             "%CH3.0",
             "%mw10:x4",
         ] {
-            assert_eq!(lex(text), [Token { kind: ObjectAddress, len: u32::try_from(text.len()).unwrap() }], "{text}");
+            let len = u32::try_from(text.len()).unwrap();
+            assert_eq!(lex(text).iter().collect::<Vec<_>>(), [Token { kind: ObjectAddress, len }], "{text}");
         }
         assert_eq!(kinds("%L20"), [LabelAddress]);
         assert_eq!(kinds("%MW10:=%MW2"), [ObjectAddress, Assign, ObjectAddress]);

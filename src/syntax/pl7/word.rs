@@ -1,20 +1,5 @@
 //! Words that the language reserves, told apart without allocation and regardless of case.
 
-/// A word of at most 16 bytes in ASCII upper case, as a number that can be matched; 0 for a longer word.
-pub(super) const fn pack(text: &str) -> u128 {
-    let bytes = text.as_bytes();
-    if bytes.len() > 16 {
-        return 0;
-    }
-    let mut packed = 0;
-    let mut at = 0;
-    while at < bytes.len() {
-        packed = packed << 8 | bytes[at].to_ascii_uppercase() as u128;
-        at += 1;
-    }
-    packed
-}
-
 macro_rules! words {
     ($(#[$meta:meta])* $vis:vis enum $name:ident { $($word:ident = $text:literal),* $(,)? }) => {
         $(#[$meta])*
@@ -28,9 +13,9 @@ macro_rules! words {
             $vis fn of(text: &str) -> Option<Self> {
                 #[expect(non_upper_case_globals, reason = "the names of the variants")]
                 mod packed {
-                    $(pub(super) const $word: u128 = crate::syntax::pl7::word::pack($text);)*
+                    $(pub(super) const $word: u128 = crate::syntax::packed::pack($text.as_bytes());)*
                 }
-                match crate::syntax::pl7::word::pack(text) {
+                match crate::syntax::packed::pack(text.as_bytes()) {
                     $(packed::$word => Some(Self::$word),)*
                     _ => None,
                 }

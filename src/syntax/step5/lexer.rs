@@ -3,13 +3,13 @@
 //! What a word is depends on its place: at the start of an instruction it is a mnemonic, behind one the letters of an
 //! operand, which are one token with its number (`M 0.0`, `KF +5`).
 
+use crate::syntax::SyntaxKind;
 use crate::syntax::parser::Tokens;
-use crate::syntax::{SyntaxKind, Token};
 
 use SyntaxKind::*;
 
 /// Splits a unit into tokens, whose lengths add up to the text.
-pub(super) fn lex(text: &str) -> Vec<Token> {
+pub(super) fn lex(text: &str) -> Tokens {
     let mut lexer = Lexer { text, at: 0, tokens: Tokens::with_capacity(text.len() / 3) };
     let (mut line_start, mut at_start) = (true, true);
     while let Some(next) = lexer.peek() {
@@ -59,7 +59,7 @@ pub(super) fn lex(text: &str) -> Vec<Token> {
         }
         line_start = false;
     }
-    lexer.tokens.finish()
+    lexer.tokens
 }
 
 fn is_blank(it: char) -> bool {

@@ -3,11 +3,11 @@
 use rowan::TextRange;
 use smol_str::SmolStr;
 
+use super::Machine;
 use super::accumulators::Accumulator;
 use super::operands::{Operand, bare_text, constant_type, first_kind, is_indexed};
 use super::rlo::{First, Rlo, RloState};
 use super::step5::block_text;
-use super::{Machine, mnemonic_text};
 use crate::model::entity::{BlockKind, BlockName};
 use crate::model::expr::{Exprs, ObjectId};
 use crate::model::object::{self, Class};
@@ -63,7 +63,7 @@ impl Machine {
     pub(super) fn call(&mut self, instr: &ast::Instr, op: Op, range: TextRange) {
         let when = match op {
             Op::CallConditional => {
-                let when = self.use_rlo(range, &mnemonic_text(instr));
+                let when = self.use_rlo(range, instr);
                 self.limit();
                 when
             }

@@ -8,7 +8,7 @@ use super::accumulators::Accumulator;
 use super::operands::bare_text;
 use super::relay::Relay;
 use super::rlo::{First, Nest, OrTerm, Rlo, RloState, meet_logic};
-use super::{Machine, mnemonic_text, op_of};
+use super::{Machine, op_of};
 use crate::model::entity::BlockName;
 use crate::model::expr::{ExprId, Exprs};
 use crate::model::unit::{DeadCause, Leave, StatementKind};
@@ -157,7 +157,7 @@ impl Machine {
     }
 
     pub(super) fn conditional(&mut self, instr: &ast::Instr, range: TextRange, negated: bool, save: bool) {
-        let rlo = self.use_rlo(range, &mnemonic_text(instr));
+        let rlo = self.use_rlo(range, instr);
         self.limit();
         if save {
             self.br = rlo;

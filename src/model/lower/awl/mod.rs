@@ -15,7 +15,7 @@ mod rlo;
 mod step5;
 
 use rowan::TextRange;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use smol_str::SmolStr;
 
 use super::builder::{Builder, index};
@@ -56,14 +56,14 @@ pub fn lower(root: SyntaxNode<'_>, entity: Entity, language: Language) -> UnitMo
         arrivals: FxHashMap::default(),
         counted: FxHashMap::default(),
         back_targets: BackTargets::default(),
-        operands: FxHashMap::default(),
+        operands: FxHashMap::with_capacity_and_hasher(usize::from(root.text_range().len()) / 64, FxBuildHasher),
         declared: FxHashMap::default(),
         temporary: Layout::default(),
         instance: Layout::default(),
         closed: false,
         last_load: None,
         jump_list: false,
-        capitals: step5::writes_capitals(root),
+        capitals: matches!(language, Language::Step5(_)) && step5::writes_capitals(root),
         processed: false,
         modified: false,
         writing: false,
@@ -161,10 +161,10 @@ impl Machine {
                 SyntaxElement::Token(_) => {}
                 SyntaxElement::Node(it) => {
                     self.hollow(bare.take());
-                    let header = ast::Network::cast(it).and_then(ast::Network::header);
-                    let head = header.and_then(|it| it.syntax().descendant_tokens().find(|it| !it.kind().is_trivia()));
                     let is_bare = !it.children_with_tokens().any(|it| code.contains(&it.kind()));
-                    bare = head.filter(|_| is_bare).map(|it| it.text_range());
+                    let header = ast::Network::cast(it).filter(|_| is_bare).and_then(ast::Network::header);
+                    let head = header.and_then(|it| it.syntax().descendant_tokens().find(|it| !it.kind().is_trivia()));
+                    bare = head.map(|it| it.text_range());
                 }
             }
         }
@@ -222,9 +222,8 @@ impl Machine {
             self.jump_list = false;
             self.label(&text, range);
         }
-        let Some(range) = instruction_range(instr) else { return };
-        let broken = instr.syntax().children().any(|it| it.kind() == SyntaxKind::Error);
-        let Some(op) = op_of(instr, self.language).filter(|_| !broken) else {
+        let Some(ast::Extent { range, has_error }) = instr.extent() else { return };
+        let Some(op) = op_of(instr, self.language).filter(|_| !has_error) else {
             self.b.instruction(range);
             self.forget();
             return;
@@ -271,7 +270,7 @@ impl Machine {
             }
             Op::Close => self.close(range),
             Op::Assign => {
-                let rlo = self.use_rlo(range, &mnemonic_text(instr));
+                let rlo = self.use_rlo(range, instr);
                 if let Some((object, at)) = self.object_operand(instr) {
                     let value = self.under_relay(rlo);
                     self.b.assign(object, false, value, at, range);
@@ -301,7 +300,7 @@ impl Machine {
             }
             Op::EdgePositive | Op::EdgeNegative => {
                 let was_first = self.first != First::No;
-                let of = self.use_rlo(range, &mnemonic_text(instr));
+                let of = self.use_rlo(range, instr);
                 let value = self.b.exprs().opaque();
                 if let Some((memory, at)) = self.object_operand(instr) {
                     self.b.touch(memory, Mode::EdgeMemory, at);
@@ -331,7 +330,7 @@ impl Machine {
                 }
             }
             Op::Timer(_) => {
-                let rlo = self.use_rlo(range, &mnemonic_text(instr));
+                let rlo = self.use_rlo(range, instr);
                 let duration = self.accumulator(0);
                 if let Some((object, at)) = self.object_operand(instr) {
                     self.b.drive(object, Pin::Start, rlo, Some(duration), at, range);
@@ -339,7 +338,7 @@ impl Machine {
                 self.limit();
             }
             Op::Enable | Op::CountUp | Op::CountDown => {
-                let rlo = self.use_rlo(range, &mnemonic_text(instr));
+                let rlo = self.use_rlo(range, instr);
                 let pin = match op {
                     Op::CountUp => Pin::Up,
                     Op::CountDown => Pin::Down,
@@ -481,7 +480,7 @@ impl Machine {
                 self.end(Exprs::TRUE, range);
             }
             Op::BlockEndConditional => {
-                let when = self.use_rlo(range, &mnemonic_text(instr));
+                let when = self.use_rlo(range, instr);
                 self.limit();
                 self.rlo = Rlo { state: RloState::Known, value: Exprs::TRUE };
                 self.end(when, range);
@@ -492,7 +491,7 @@ impl Machine {
                 self.b.model.opens_instance = true;
             }
             Op::McrOpen => {
-                let rlo = self.use_rlo(range, "MCR(");
+                let rlo = self.use_rlo(range, instr);
                 self.limit();
                 self.open_relay(rlo);
                 self.b.statement(StatementKind::Other, range);
@@ -560,14 +559,6 @@ fn op_of(instr: &ast::Instr, language: Language) -> Option<Op> {
 
 fn mnemonic_text(instr: &ast::Instr) -> SmolStr {
     instr.mnemonic().map(|it| it.text).unwrap_or_default()
-}
-
-/// From the mnemonic to the last operand; `None` for a label alone.
-fn instruction_range(instr: &ast::Instr) -> Option<TextRange> {
-    let start = instr.mnemonic_tokens().next()?.text_range();
-    let end = instr.arg_list().map(|it| it.range()).or_else(|| Some(instr.operands().last()?.range()));
-    let mnemonic = instr.mnemonic_tokens().last().map_or(start, |it| it.text_range());
-    Some(start.cover(mnemonic).cover(end.unwrap_or(start)))
 }
 
 #[cfg(test)]

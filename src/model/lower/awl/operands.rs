@@ -78,14 +78,13 @@ impl Machine {
     }
 
     pub(super) fn operand(&mut self, node: &ast::Operand) -> Operand {
-        let mut text = bare_text(node);
+        let text = if node.syntax().is_leaf() { node.syntax().text() } else { String::from(bare_text(node)).into() };
         // At once or with the image: the operand is the same.
-        if let Some(bare) = text.strip_suffix(":P").or_else(|| text.strip_suffix(":p")) {
-            text = bare.into();
-        }
-        if let Some(known) = self.operands.get(&text) {
+        let text = text.strip_suffix(":P").or_else(|| text.strip_suffix(":p")).unwrap_or(&text);
+        if let Some(known) = self.operands.get(text) {
             return known.clone();
         }
+        let text = SmolStr::new(text);
         if let Language::Step5(mnemonics) = self.language {
             let operand = self.step5_operand(node, &text, mnemonics);
             if let Operand::Object(object) = operand
@@ -194,8 +193,8 @@ impl Machine {
     /// `Err`: what stands for a text that is no address.
     pub(super) fn address(&mut self, text: &str, range: TextRange) -> Result<ObjectId, ObjectId> {
         if !self.declared.is_empty() {
-            let root = text.split(['.', '[']).next().unwrap_or_default();
-            if self.declared.contains_key(root.to_lowercase_smolstr().as_str()) {
+            let end = text.bytes().position(|it| matches!(it, b'.' | b'[')).unwrap_or(text.len());
+            if self.declared.contains_key(text[..end].to_lowercase_smolstr().as_str()) {
                 return Ok(self.local(text, false));
             }
         }

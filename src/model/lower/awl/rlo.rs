@@ -119,7 +119,7 @@ impl Machine {
     }
 
     /// An instruction acts on the RLO: reports one that nothing in the block computed.
-    pub(super) fn use_rlo(&mut self, range: TextRange, text: &str) -> ExprId {
+    pub(super) fn use_rlo(&mut self, range: TextRange, instr: &ast::Instr) -> ExprId {
         if self.first != First::No && self.b.is_reachable() {
             let kind = match self.rlo.state {
                 RloState::Known => None,
@@ -127,7 +127,7 @@ impl Machine {
                 RloState::AfterCall => Some(OddityKind::RloAfterCall),
             };
             if let Some(kind) = kind {
-                self.b.oddity(kind, range, text);
+                self.b.oddity(kind, range, mnemonic_text(instr));
                 // One report a cause: what follows acts on the same RLO.
                 let value = self.b.exprs().opaque();
                 self.rlo = Rlo { state: RloState::Known, value };
@@ -248,7 +248,7 @@ impl Machine {
     }
 
     pub(super) fn set_or_reset(&mut self, op: Op, instr: &ast::Instr, range: TextRange) {
-        let rlo = self.use_rlo(range, &mnemonic_text(instr));
+        let rlo = self.use_rlo(range, instr);
         if let Some((object, at)) = self.object_operand(instr) {
             let class = self.b.model.objects[object.0 as usize].class;
             let is_block = matches!(class, Class::Timer | Class::Counter)

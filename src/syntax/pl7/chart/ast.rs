@@ -339,20 +339,22 @@ impl PageCell<'_> {
         let (mut column, mut line) = (None, None);
         let mut next_is_line = false;
         for token in self.significant() {
-            let text = token.text();
-            let letter = text.as_bytes().first().map(u8::to_ascii_uppercase);
-            next_is_line = match letter {
-                Some(b'C') => false,
-                Some(b'L') => true,
-                _ => next_is_line,
-            };
-            if matches!(token.kind(), SyntaxKind::Comma) {
-                next_is_line = true;
+            match token.kind() {
+                SyntaxKind::Comma => {
+                    next_is_line = true;
+                    continue;
+                }
+                SyntaxKind::LParen | SyntaxKind::RParen => continue,
+                _ => {}
             }
-            let digits = text.trim_start_matches(|it: char| it.is_ascii_alphabetic());
-            if !matches!(token.kind(), SyntaxKind::Comma | SyntaxKind::LParen | SyntaxKind::RParen)
-                && let Ok(number) = digits.parse()
-            {
+            let text = token.text();
+            match text.as_bytes() {
+                [b'C' | b'c', ..] => next_is_line = false,
+                [b'L' | b'l', ..] => next_is_line = true,
+                _ => {}
+            }
+            let letters = text.bytes().take_while(u8::is_ascii_alphabetic).count();
+            if let Ok(number) = text[letters..].parse() {
                 *(if next_is_line { &mut line } else { &mut column }) = Some(number);
             }
         }

@@ -17,11 +17,9 @@ use crate::syntax::{Parser, SyntaxKind};
 /// because symbols may be called `Step` or `Action`.
 pub(in crate::syntax::pl7) fn stops(parser: &Parser<'_>) -> Vec<bool> {
     let kind = |n: usize| parser.nth(n);
-    let word = |n: usize| Word::of(parser.nth_text(n)).filter(|_| kind(n) == Some(Ident));
+    let words = parser.words(Word::of);
+    let word = |n: usize| words.get(n).copied().flatten();
     let stops = |n: usize| {
-        if kind(n) != Some(Ident) {
-            return false;
-        }
         let Some(found) = word(n) else { return false };
         let next = kind(n + 1);
         match found {
@@ -52,7 +50,7 @@ pub(in crate::syntax::pl7) fn stops(parser: &Parser<'_>) -> Vec<bool> {
             _ => false,
         }
     };
-    (0..).take_while(|&n| kind(n).is_some()).map(stops).collect()
+    (0..words.len()).map(stops).collect()
 }
 
 impl<'t> Grammar<'_, 't> {

@@ -1,6 +1,7 @@
 //! Words of charts: every spelling that is read, in one table.
 
 use super::ast::{ConnectorKind, LinkKind, StepKind};
+use crate::syntax::packed::{Index, index};
 
 /// What a word of a chart means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,7 +87,8 @@ impl Word {
         if text.len() < 4 && !text.eq_ignore_ascii_case("AT") && !text.eq_ignore_ascii_case("TO") {
             return None;
         }
-        WORDS.iter().find(|it| it.0.eq_ignore_ascii_case(text)).map(|it| it.1)
+        static INDEX: Index<{ WORDS.len() }> = index!(WORDS, 0);
+        INDEX.find(text).map(|it| WORDS[it].1)
     }
 
     /// Whether the word ends what another opens.
