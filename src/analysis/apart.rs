@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::chart;
-use super::conditions::{Objects, Space};
+use super::conditions::{Objects, Space, Verdict};
 use super::facts::{self, UnitFacts};
 use super::processing::InAction;
 use super::program::{Context, GlobalUse, ProgramIndex};
@@ -282,7 +282,7 @@ impl<'w, 'p, 'a> Pair<'w, 'p, 'a> {
         states.iter().all(|state| {
             let steps = reads.iter().copied().zip(state.iter().copied());
             let all: Vec<(ExprId, bool)> = self.conditions.iter().copied().chain(steps).collect();
-            space.solve(&all).is_never()
+            space.possible(&all) == Verdict::Never
         })
     }
 }

@@ -14,7 +14,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::chart::{Chart, FactReceptivity, Step, Transition};
-use super::conditions::{Answer, Objects, Space};
+use super::conditions::{Answer, Objects, Space, Verdict};
 use super::facts::{self, UnitFacts};
 use super::program::ProgramIndex;
 use crate::model::chart::{Graph, StepKind, StepName};
@@ -35,8 +35,8 @@ pub const MAX_CAUSES: usize = 32;
 /// Valid transitions are compared pair by pair: so many comparisons in all, hundreds of times what charts need.
 const MAX_COMPARISONS: usize = 20_000_000;
 
-/// What the questions of one exploration are made of, expressions counted once for each question: a second of a slow machine.
-const MAX_EFFORT: usize = 3_000_000;
+/// What the questions of one exploration are made of, expressions counted once for each question: some tenths of a second.
+const MAX_EFFORT: usize = 500_000;
 
 /// Of more transitions than this that depend on one another, only single ones and pairs are crossed.
 const MAX_TOGETHER: usize = 5;
@@ -1153,10 +1153,10 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
                 Guarded::Never | Guarded::Unknown => None,
             });
             let wanted: Vec<(ExprId, bool)> = guards.chain(steps.iter().copied()).collect();
-            match space.solve(&wanted) {
-                Answer::Never => {}
-                Answer::NotDecided => left_out = true,
-                Answer::Possible(_) => sets.push(set),
+            match space.possible(&wanted) {
+                Verdict::Never => {}
+                Verdict::NotDecided => left_out = true,
+                Verdict::Possible => sets.push(set),
             }
         }
         (sets, left_out)

@@ -139,8 +139,13 @@ impl<'a> Space<'a> {
         }
         match Table::new(&problem) {
             Some(table) => table.answer(&question),
-            None => problem.solve(&question),
+            None => problem.solve(&question, false),
         }
+    }
+
+    /// Whether all conditions can have the values wanted of them at one moment.
+    pub fn possible(&self, wanted: &[(ExprId, bool)]) -> Verdict {
+        self.decide(&Question { wanted, never: &[] })
     }
 
     /// Whether all of the conditions can hold at once.
@@ -242,7 +247,7 @@ impl<'a> Space<'a> {
             Some(answer) => answer,
             None => match Table::new(&problem) {
                 Some(table) => return table.decide(question),
-                None => problem.solve(question),
+                None => problem.solve(question, true),
             },
         };
         match answer {

@@ -366,7 +366,7 @@ impl<'s, 'a> Problem<'s, 'a> {
     }
 
     /// Values of the terms that agree with those of the atoms, or atoms that no values agree with.
-    fn explain(&self, values: &[Option<bool>]) -> Result<Witness, Conflict> {
+    pub(super) fn explain(&self, values: &[Option<bool>]) -> Result<Witness, Conflict> {
         let mut given = Vec::new();
         let mut assumed = false;
         let mut explained = vec![false; self.terms.len()];

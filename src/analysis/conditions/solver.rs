@@ -26,7 +26,8 @@ impl Callbacks for Effort {
 }
 
 impl Problem<'_, '_> {
-    pub(super) fn solve(&self, question: &Question<'_>) -> Answer {
+    /// `in_full`: without leaving out of the witness what does not matter, which takes long.
+    pub(super) fn solve(&self, question: &Question<'_>, in_full: bool) -> Answer {
         let mut solver = Solver::new(SolverOpts::default(), Effort::default());
         let vars: Vec<Var> = self.gates.iter().map(|_| solver.new_var_default()).collect();
         let lit = |node: usize, value: bool| Lit::new(vars[node], value);
@@ -79,7 +80,11 @@ impl Problem<'_, '_> {
                 _ => return Answer::NotDecided,
             }
             let values = (0..self.atoms.len()).map(|it| Some(solver.value_lit(of_atom(it, true)) == lbool::TRUE));
-            match self.witness(values.collect(), question) {
+            let values: Vec<Option<bool>> = values.collect();
+            if in_full && let Ok(witness) = self.explain(&values) {
+                return Answer::Possible(witness);
+            }
+            match self.witness(values, question) {
                 Ok(witness) => return Answer::Possible(witness),
                 Err(conflict) => {
                     let lits: Vec<Lit> = conflict.into_iter().map(|(atom, value)| of_atom(atom, !value)).collect();

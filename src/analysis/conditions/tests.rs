@@ -123,7 +123,7 @@ proptest! {
                 let question = Question { wanted: &wanted, never: &never };
                 let problem = Problem::new(&space, &question).unwrap();
                 let Some(table) = Table::new(&problem) else { continue };
-                let by_solver = problem.solve(&question);
+                let by_solver = problem.solve(&question, false);
                 prop_assert_ne!(&by_solver, &Answer::NotDecided);
                 prop_assert_eq!(table.decide(&question) == Verdict::Never, by_solver.is_never());
                 prop_assert_eq!(table.answer(&question).is_never(), by_solver.is_never());

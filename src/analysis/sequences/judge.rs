@@ -12,7 +12,7 @@ use super::trace::Trace;
 use super::{Sequence, SequenceTransition};
 use crate::analysis::conditions::{self, Answer, Given};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator, Replaced};
-use crate::model::object::Class;
+use crate::model::object::{Class, Type};
 
 /// What a scan does otherwise than the rules say.
 #[derive(Debug, Clone)]
@@ -68,6 +68,8 @@ pub struct Judge<'s, 't, 'a> {
     /// By transition: the situations in which it is valid.
     valid: Vec<Vec<Vec<usize>>>,
     steps: FxHashMap<ObjectId, usize>,
+    /// What the scan writes.
+    written: FxHashSet<ObjectId>,
     questions: usize,
 }
 
@@ -75,7 +77,8 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
     pub fn new(trace: &'t mut Trace<'a>, sequence: &'s Sequence<'a>) -> Self {
         let valid = situations(trace, sequence);
         let steps = sequence.steps.iter().map(|it| it.id).zip(0..).collect();
-        Self { trace, sequence, valid, steps, questions: MOST_QUESTIONS }
+        let written = trace.events.iter().map(|it| it.object).collect();
+        Self { trace, sequence, valid, steps, written, questions: MOST_QUESTIONS }
     }
 
     pub fn deviations(&mut self) -> Vec<Deviation> {
@@ -147,7 +150,14 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
                 Expr::Read { object, .. } => self.steps.get(&object).copied(),
                 _ => None,
             });
-            let Some(step) = step.filter(|_| !self.trace.mentions(when, is_timer)) else { continue };
+            // A bit that nothing shown here writes, but the process or somebody else, may be a pulse.
+            let is_pulse = |it: ObjectId| {
+                let object = self.trace.object(it);
+                let is_bit = object.ty == Type::Bool || object.class == Class::Symbol;
+                let is_process = matches!(object.class, Class::Input | Class::PeripheralInput);
+                is_timer(it) || is_bit && !is_process && !self.written.contains(&it)
+            };
+            let Some(step) = step.filter(|_| !self.trace.mentions(when, is_pulse)) else { continue };
             let wanted = [(self.trace.expand(when), true), (self.trace.next(when), true)];
             let mut situations: Vec<Vec<usize>> =
                 self.valid.iter().flatten().filter(|it| it.contains(&step)).cloned().collect();

@@ -93,6 +93,8 @@ impl<'a> Sequences<'a> {
         }
         let mut trace = Trace::of_scan(program);
         let mut found = set_reset::find(&mut trace);
+        // A bit that sets others and stays is a mode with its flags, and no step.
+        found.retain(|it| !it.transitions.iter().any(FoundTransition::keeps_a_source));
         let mut faults = Vec::new();
         for it in tables::find(program, &mut trace) {
             found.push(it.found);

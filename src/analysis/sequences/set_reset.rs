@@ -46,6 +46,11 @@ impl FoundTransition {
         self.sets.iter().chain(&self.resets).map(|it| it.1).min().unwrap_or(0)
     }
 
+    /// Whether one of the steps before it is a step behind it as well.
+    pub fn keeps_a_source(&self) -> bool {
+        self.sources.iter().any(|it| self.targets.contains(it))
+    }
+
     /// Where it stands: its first set, or its first reset.
     pub fn place(&self) -> usize {
         self.sets.iter().map(|it| it.1).min().unwrap_or_else(|| self.event())
