@@ -105,6 +105,8 @@ pub struct Net<'p, 'a> {
     entering: Vec<Vec<usize>>,
     /// Reads of step bits of this net.
     steps_read: FxHashMap<ExprId, Node>,
+    /// Steps that share their number with another one of their chart.
+    drawn_twice: FxHashSet<Node>,
 }
 
 /// Steps that transitions connect.
@@ -371,7 +373,14 @@ impl<'p, 'a> Net<'p, 'a> {
     fn empty(family: Family, charts: Vec<&'p Chart<'a>>) -> Self {
         let has_gaps = charts.iter().any(|it| it.has_gaps);
         let count = |(at, chart): (usize, &&Chart<'_>)| (0..).take(chart.steps.len()).map(move |step| (at, step));
-        let nodes = charts.iter().enumerate().flat_map(count).collect();
+        let nodes: Vec<(usize, u32)> = charts.iter().enumerate().flat_map(count).collect();
+        let mut by_name: FxHashMap<(usize, &StepName), Vec<Node>> = FxHashMap::default();
+        for (node, &(chart, step)) in (0..).zip(&nodes) {
+            if let Some(name) = &charts[chart].steps[step as usize].it.name {
+                by_name.entry((chart, name)).or_default().push(node);
+            }
+        }
+        let drawn_twice = by_name.into_values().filter(|it| it.len() > 1).flatten().collect();
         Self {
             charts,
             nodes,
@@ -390,6 +399,7 @@ impl<'p, 'a> Net<'p, 'a> {
             leaving: Vec::new(),
             entering: Vec::new(),
             steps_read: FxHashMap::default(),
+            drawn_twice,
         }
     }
 
@@ -829,13 +839,7 @@ impl<'p, 'a> Net<'p, 'a> {
 
     /// Whether a step is drawn more than once, so that what leaves it leaves several.
     pub fn is_drawn_twice(&self, node: Node) -> bool {
-        let Some((chart, name)) = self.nodes.get(node as usize).and_then(|&(chart, step)| {
-            let chart = self.charts.get(chart)?;
-            Some((chart, chart.steps.get(step as usize)?.it.name.as_ref()?))
-        }) else {
-            return false;
-        };
-        chart.steps.iter().filter(|it| it.it.name.as_ref() == Some(name)).count() > 1
+        self.drawn_twice.contains(&node)
     }
 
     /// Whether a receptivity says something of an object.

@@ -50,8 +50,9 @@ impl<const N: usize> Index<N> {
     pub(super) fn find(&self, word: &str) -> Option<usize> {
         let key = key(word.as_bytes());
         let at = self.keys[self.keys.binary_search_by_key(&key, |it| it.0).ok()?].1;
+        let found = self.words[at];
         // The key of a long word leaves some of it out.
-        (word.len() <= 16 || self.words[at].eq_ignore_ascii_case(word)).then_some(at)
+        (found.len() == word.len() && (word.len() <= 16 || found.eq_ignore_ascii_case(word))).then_some(at)
     }
 }
 
@@ -85,8 +86,8 @@ mod tests {
     #[test]
     fn long_words_are_compared() {
         let index = Index::new(["TO", "DESTINATION_CONNECTOR", "AT"]);
-        let found = ["at", "Destination_Connector", "TO", "DESTINATIVE_CONNECTOR", "OT", ""].map(|it| index.find(it));
-        assert_eq!(found, [Some(2), Some(1), Some(0), None, None, None]);
+        let words = ["at", "Destination_Connector", "TO", "DESTINATIVE_CONNECTOR", "DESTINATONNECTOR", "OT", ""];
+        assert_eq!(words.map(|it| index.find(it)), [Some(2), Some(1), Some(0), None, None, None, None]);
     }
 
     #[test]
