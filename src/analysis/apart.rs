@@ -332,6 +332,7 @@ mod tests {
         let post = |a: &str, b: &str| {
             format!("! IF {a} THEN %Q2.0 := %I1.4; END_IF;\n! IF {b} THEN %Q2.0 := %I1.5; END_IF;\n")
         };
+        let unstarted = LOOP.replace("INITIAL_STEP", "STEP");
         let cases = [
             ("%X1", "%X2", LOOP, true),
             ("%X1", "%X2", PARALLEL, false),
@@ -341,6 +342,8 @@ mod tests {
             ("NOT %X0", "NOT (%X1 OR %X2)", LOOP, true),
             ("%X1", "NOT %X2", LOOP, false),
             ("%X1 AND %I1.6", "%I1.7", LOOP, false),
+            // A chart that nothing starts.
+            ("NOT %X1", "NOT %X2", unstarted.as_str(), false),
             // No step of this chart.
             ("%X1", "%X7", LOOP, false),
         ];

@@ -244,7 +244,9 @@ impl<'p, 'a> Study<'p, 'a> {
         let (net, nodes) = (&self.net, &part.component.nodes);
         let is_set = net.presets.iter().flatten().any(|it| nodes.binary_search(it).is_ok());
         let loses_steps = net.is_commanded || nodes.iter().any(|it| net.resets.contains(it));
-        if is_set || !self.knows_all() || reached.is_partial || loses_steps && asked.len() > MOST_STEPS {
+        // What nothing starts is in no situation, and its bits are 0: a finding of its own.
+        let is_known = self.knows_all() && !reached.is_partial && !reached.situations.is_empty();
+        if is_set || !is_known || loses_steps && asked.len() > MOST_STEPS {
             return None;
         }
         let places =

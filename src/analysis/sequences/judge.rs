@@ -68,8 +68,6 @@ pub struct Judge<'s, 't, 'a> {
     /// By transition: the situations in which it is valid.
     valid: Vec<Vec<Vec<usize>>>,
     steps: FxHashMap<ObjectId, usize>,
-    /// What the scan writes.
-    written: FxHashSet<ObjectId>,
     questions: usize,
 }
 
@@ -77,8 +75,7 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
     pub fn new(trace: &'t mut Trace<'a>, sequence: &'s Sequence<'a>) -> Self {
         let valid = situations(trace, sequence);
         let steps = sequence.steps.iter().map(|it| it.id).zip(0..).collect();
-        let written = trace.events.iter().map(|it| it.object).collect();
-        Self { trace, sequence, valid, steps, written, questions: MOST_QUESTIONS }
+        Self { trace, sequence, valid, steps, questions: MOST_QUESTIONS }
     }
 
     pub fn deviations(&mut self) -> Vec<Deviation> {
@@ -155,7 +152,7 @@ impl<'s, 't, 'a> Judge<'s, 't, 'a> {
                 let object = self.trace.object(it);
                 let is_bit = object.ty == Type::Bool || object.class == Class::Symbol;
                 let is_process = matches!(object.class, Class::Input | Class::PeripheralInput);
-                is_timer(it) || is_bit && !is_process && !self.written.contains(&it)
+                is_timer(it) || is_bit && !is_process && !self.trace.is_written(it)
             };
             let Some(step) = step.filter(|_| !self.trace.mentions(when, is_pulse)) else { continue };
             let wanted = [(self.trace.expand(when), true), (self.trace.next(when), true)];

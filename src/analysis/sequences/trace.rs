@@ -220,6 +220,12 @@ impl<'a> Trace<'a> {
         self.expand(read)
     }
 
+    /// Whether the scan gives a bit a value that is known here.
+    pub fn is_written(&self, bit: ObjectId) -> bool {
+        let last = self.last.get(bit.0 as usize).copied().unwrap_or(0);
+        (1..=last).any(|version| self.values.contains_key(&(bit, version)))
+    }
+
     /// Value of a bit at the start of the scan.
     pub fn start(&mut self, object: ObjectId) -> ExprId {
         self.exprs.read(object, 0)
