@@ -2,6 +2,7 @@
 
 use rowan::TextRange;
 
+use crate::analysis::conditions::{Memo, Space};
 use crate::analysis::gaps;
 use crate::lint::{Sink, UnitCx};
 use crate::model::expr::Exprs;
@@ -13,10 +14,12 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     if model.jumps.is_empty() {
         return;
     }
+    let memo = Memo::default();
+    let space = Space::of(model).learning(&memo);
     let (skips, writes, exits) = (gaps::skips(model), gaps::writes(model), gaps::exits(model));
     let mut skipped: Vec<(u32, &Object, &Access)> = Vec::new();
     for access in model.accesses.iter().filter(|it| is_scanned(it.mode)) {
-        let missed = writes.get(&access.object.0).is_some_and(|it| it.leave_out(model, Exprs::TRUE, &exits));
+        let missed = writes.get(&access.object.0).is_some_and(|it| it.leave_out(space, Exprs::TRUE, &exits));
         let object = model.object(access.object);
         if let Some(jump) = gaps::skip(&skips, access).filter(|_| missed)
             && !skipped.iter().rev().take_while(|it| it.0 == jump).any(|it| it.1 == object)

@@ -3,7 +3,7 @@
 use rowan::TextRange;
 use rustc_hash::FxHashMap;
 
-use super::conditions::{Space, Verdict};
+use super::conditions::{Memo, Space, Verdict};
 use super::known::Known;
 use crate::model::UnitModel;
 use crate::model::expr::{ExprId, Exprs};
@@ -54,7 +54,8 @@ fn acts(statement: &Statement) -> bool {
 /// of arms, one that asks what an arm before it asks is left to [`repeated`].
 pub fn decided(model: &UnitModel) -> Vec<Decided> {
     let known = Known::new(model);
-    let space = Space::of(model);
+    let memo = Memo::default();
+    let space = Space::of(model).learning(&memo);
     let mut paths = Paths::default();
     // What a condition tests, its statement reads, also where its form alone made it a constant.
     let mut reads = model.accesses.iter().filter(|it| it.mode.reads()).map(|it| it.statement).peekable();
@@ -83,7 +84,7 @@ pub fn decided(model: &UnitModel) -> Vec<Decided> {
         }
         let stored = stored(model, &known, condition, statement.path);
         let values: Vec<(ExprId, i64)> = stored.iter().map(|it| (it.0, it.1)).collect();
-        let with_stored = Space { known: &values, ..space };
+        let with_stored = space.knowing(&values);
         if let Some(&(.., anchor)) = stored.first()
             && let Some(value) = with_stored.constant(Exprs::TRUE, condition)
         {
@@ -117,7 +118,8 @@ fn stored(model: &UnitModel, known: &Known<'_>, condition: ExprId, path: ExprId)
 
 /// Arms of one `IF` that ask what an arm before them asks: the statements of the later and of the earlier one.
 pub fn repeated(model: &UnitModel) -> Vec<(u32, u32)> {
-    let space = Space::of(model);
+    let memo = Memo::default();
+    let space = Space::of(model).learning(&memo);
     let arms = (0..).zip(&model.statements).filter(|it| before(it.1).is_some());
     arms.filter_map(|(at, _)| Some((at, repeated_arm(model, &space, at)?))).collect()
 }
@@ -148,7 +150,8 @@ fn repeated_arm(model: &UnitModel, space: &Space<'_>, arm: u32) -> Option<u32> {
 /// The statements that no values of objects let control come to, though their paths are not FALSE by form: the first and
 /// the last of each stretch.
 pub fn unreached(model: &UnitModel) -> Vec<(u32, u32)> {
-    let space = Space::of(model);
+    let memo = Memo::default();
+    let space = Space::of(model).learning(&memo);
     let mut paths = Paths::default();
     let mut found: Vec<(u32, u32)> = Vec::new();
     for (at, statement) in (0..).zip(&model.statements) {

@@ -9,7 +9,7 @@ use smol_str::SmolStr;
 
 use super::apart::{self, Asking};
 use super::chart::ChartFacts;
-use super::conditions::{Space, Verdict};
+use super::conditions::{Memo, Space, Verdict};
 use super::cost::UnitCost;
 use super::gaps;
 use super::liveness::{self, Lost};
@@ -242,7 +242,9 @@ impl UnitFacts {
                 _ => {}
             }
         }
-        let groups = groups(model, &given);
+        let memo = Memo::default();
+        let space = Space::of(model).learning(&memo);
+        let groups = groups(model, space, &given);
         let writes = gaps::writes(model);
         let (skips, exits) = (gaps::skips(model), gaps::exits(model));
         let ranges = Ranges::new(model);
@@ -280,7 +282,7 @@ impl UnitFacts {
                         .filter(|_| access.mode.is_edge() || matches!(access.mode, Mode::EdgeMemory | Mode::Drive(_)))
                         .and_then(|it| Some(model.jumps.get(it as usize)?.anchor)),
                     stale: access.mode.is_edge()
-                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(model, access.path, &[])),
+                        && writes.get(&access.object.0).is_some_and(|it| it.leave_out(space, access.path, &[])),
                     constant,
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
@@ -291,7 +293,7 @@ impl UnitFacts {
             })
             .collect();
         let missed = |at: u32| {
-            let it = writes.get(&at).filter(|it| it.leave_out(model, Exprs::TRUE, &exits))?;
+            let it = writes.get(&at).filter(|it| it.leave_out(space, Exprs::TRUE, &exits))?;
             Some(it.first().0)
         };
         let objects = (0..).zip(&model.objects).zip(numbers);
@@ -302,8 +304,8 @@ impl UnitFacts {
             uses,
             calls: calls(model),
             indexes: model.indexes.clone(),
-            exclusive_calls: exclusive_calls(model),
-            exclusive_uses: exclusive_uses(model, &given),
+            exclusive_calls: exclusive_calls(model, space),
+            exclusive_uses: exclusive_uses(model, space, &given),
             asking: Asking::new(model),
             instance_of: model.instance_of.clone(),
             opens_instance: model.opens_instance,
@@ -527,7 +529,7 @@ fn by_object(model: &UnitModel, wanted: impl Fn(&Access) -> bool) -> Vec<(u32, &
 }
 
 /// Group of each access: equal for writes of one object of which at most one takes effect in a scan.
-fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
+fn groups(model: &UnitModel, space: Space<'_>, given: &Given) -> Vec<u32> {
     // What a call does to an actual parameter shows in the program alone.
     let drives = |it: &Access| it.mode.assigns() || matches!(it.mode, Mode::Store | Mode::InOut | Mode::Drive(_));
     let writes = by_object(model, drives);
@@ -540,7 +542,7 @@ fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
                 group.len() < MAX_COMPARED
                     && group.iter().all(|&(other, before)| {
                         budget = budget.saturating_sub(1);
-                        budget > 0 && same_drive(model, given, (other, before), (at, access))
+                        budget > 0 && same_drive(model, space, given, (other, before), (at, access))
                     })
             };
             match open.iter_mut().take(MAX_COMPARED).find(|it| fits(it)) {
@@ -557,7 +559,7 @@ fn groups(model: &UnitModel, given: &Given) -> Vec<u32> {
     groups
 }
 
-fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
+fn exclusive_uses(model: &UnitModel, space: Space<'_>, given: &Given) -> Vec<(u32, u32)> {
     let stores = |it: Mode| matches!(it, Mode::Set | Mode::Reset | Mode::EdgeMemory);
     let writes = by_object(model, |it| stores(it.mode) || it.mode.assigns() || it.mode == Mode::InOut);
     let mut pairs = Vec::new();
@@ -565,7 +567,7 @@ fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
         for (at, second) in list.iter().take(MAX_COMPARED).enumerate() {
             for first in &list[..at] {
                 let either = stores(first.1.mode) || stores(second.1.mode);
-                if either && same_drive(model, given, *first, *second) {
+                if either && same_drive(model, space, given, *first, *second) {
                     pairs.push((first.1.anchor.min(second.1.anchor), first.1.anchor.max(second.1.anchor)));
                 }
             }
@@ -577,7 +579,13 @@ fn exclusive_uses(model: &UnitModel, given: &Given) -> Vec<(u32, u32)> {
 
 /// Whether two writes of one object count as one: never both in a scan, or a constant default that a later,
 /// conditional write of the same unit overrides.
-fn same_drive(model: &UnitModel, given: &Given, first: (u32, &Access), second: (u32, &Access)) -> bool {
+fn same_drive(
+    model: &UnitModel,
+    space: Space<'_>,
+    given: &Given,
+    first: (u32, &Access),
+    second: (u32, &Access),
+) -> bool {
     let (Some(a), Some(b)) = (model.statement(first.1), model.statement(second.1)) else { return false };
     if a.path == Exprs::FALSE || b.path == Exprs::FALSE {
         return true;
@@ -591,7 +599,7 @@ fn same_drive(model: &UnitModel, given: &Given, first: (u32, &Access), second: (
         return true;
     }
     let (a, b) = (effective(model, first.1, a.path), effective(model, second.1, b.path));
-    Space::of(model).together(&[a.0, a.1, b.0, b.1]) == Verdict::Never
+    space.together(&[a.0, a.1, b.0, b.1]) == Verdict::Never
 }
 
 /// Path to a write, and the condition at the instruction itself. A pin of a timer or counter takes 0 as well as 1: the
@@ -630,7 +638,7 @@ fn calls(model: &UnitModel) -> Vec<FactCall> {
         .collect()
 }
 
-fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
+fn exclusive_calls(model: &UnitModel, space: Space<'_>) -> Vec<(u32, u32)> {
     let conditional: Vec<(u32, ExprId, &Call)> = model
         .calls
         .iter()
@@ -653,7 +661,7 @@ fn exclusive_calls(model: &UnitModel) -> Vec<(u32, u32)> {
         for other in others {
             let (a, path_a, call_a) = conditional[other];
             let all = [path_a, call_a.when, path_b, call_b.when];
-            if Space::of(model).together(&all) == Verdict::Never {
+            if space.together(&all) == Verdict::Never {
                 pairs.push((a, b));
             }
         }

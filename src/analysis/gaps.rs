@@ -22,12 +22,12 @@ pub struct Writes {
 impl Writes {
     /// Whether some run of the unit, in which the condition holds and none of the exits is taken, passes all places by
     /// for certain.
-    pub fn leave_out(&self, model: &UnitModel, given: ExprId, exits: &[[ExprId; 2]]) -> bool {
+    pub fn leave_out(&self, space: Space<'_>, given: ExprId, exits: &[[ExprId; 2]]) -> bool {
         if self.is_open {
             return false;
         }
         let places: Vec<[ExprId; 2]> = self.places.iter().chain(exits).copied().collect();
-        Space::of(model).without(&[given], &places) == Verdict::Possible
+        space.without(&[given], &places) == Verdict::Possible
     }
 
     /// The condition of the first place.
@@ -134,7 +134,7 @@ mod tests {
     fn left_out(language: Language, text: &str) -> Vec<String> {
         let model = model(language, text);
         let (writes, exits) = (writes(&model), exits(&model));
-        let is_left = |at: &u32| writes.get(at).is_some_and(|it| it.leave_out(&model, Exprs::TRUE, &exits));
+        let is_left = |at: &u32| writes.get(at).is_some_and(|it| it.leave_out(Space::of(&model), Exprs::TRUE, &exits));
         let objects = (0..).zip(&model.objects).filter(|it| is_left(&it.0));
         objects.map(|it| it.1.text.to_string()).collect()
     }

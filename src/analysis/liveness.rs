@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use rustc_hash::FxHashMap;
 
 use super::Site;
-use super::conditions::{Space, Verdict};
+use super::conditions::{Memo, Space, Verdict};
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::UnitModel;
 use crate::model::dfb::Role;
@@ -49,9 +49,10 @@ pub fn lost(model: &UnitModel) -> Vec<Lost> {
     if model.has_gaps || model.language == Language::Pl7Xref {
         return Vec::new();
     }
+    let memo = Memo::default();
     let mut walk = Walk {
         model,
-        space: Space::of(model),
+        space: Space::of(model).learning(&memo),
         waiting: Vec::new(),
         areas: Areas::new(model),
         lists: Lists::default(),

@@ -9,11 +9,19 @@
 //! is said to be not decided. The answer is exact but where a [`Witness`] says that it assumed something: two terms that are
 //! compared with one another, computed values, and words that overlap are taken as free of one another.
 
+mod cases;
 mod problem;
 mod solver;
 mod table;
 
-use problem::{Constant, Problem, WIDEST};
+use std::cell::RefCell;
+use std::cmp::Ordering;
+
+use rustc_hash::FxHashMap;
+
+use cases::Cases;
+use problem::{Bound, Constant, Problem, Said, WIDEST};
+use solver::Told;
 use table::Table;
 
 use crate::model::UnitModel;
@@ -29,8 +37,26 @@ pub struct Space<'a> {
     pub objects: Objects<'a>,
     pub family: Family,
     /// Terms of which the value is known.
-    pub known: &'a [(ExprId, i64)],
+    known: &'a [(ExprId, i64)],
+    memo: Option<&'a Memo>,
 }
+
+/// What was learnt from questions about one space, for those who ask many about the same conditions. It changes no answer
+/// but those that would be [`Verdict::NotDecided`].
+#[derive(Debug, Default)]
+pub struct Memo {
+    cases: RefCell<Cases>,
+    told: RefCell<Told>,
+    /// What was asked for which no possible case is known, and the answer: what several objects are written under is one
+    /// question.
+    asked: RefCell<FxHashMap<(Wanted, Pairs), Verdict>>,
+}
+
+/// So many answers are kept.
+const MOST_KEPT: usize = 1 << 16;
+
+type Wanted = Box<[(ExprId, bool)]>;
+type Pairs = Box<[[ExprId; 2]]>;
 
 /// Objects by [`ObjectId`]: those of a unit, or of several.
 #[derive(Debug, Clone, Copy)]
@@ -123,23 +149,45 @@ struct Question<'q> {
 }
 
 impl<'a> Space<'a> {
+    pub fn new(exprs: &'a Exprs, objects: Objects<'a>, family: Family) -> Self {
+        Self { exprs, objects, family, known: &[], memo: None }
+    }
+
     /// The conditions of one unit.
     pub fn of(model: &'a UnitModel) -> Self {
         // An exchange file has no conditions between its programs.
         let family = Family::of(model.language).unwrap_or(Family::Pl7);
-        Self { exprs: &model.exprs, objects: Objects::Unit(&model.objects), family, known: &[] }
+        Self::new(&model.exprs, Objects::Unit(&model.objects), family)
+    }
+
+    /// The same space, in which what one question teaches serves the next. A memo is of one space, to which expressions may
+    /// be added.
+    pub fn learning(self, memo: &'a Memo) -> Self {
+        Self { memo: Some(memo), ..self }
+    }
+
+    /// The same space, where the values of some terms are known.
+    pub fn knowing<'k>(self, known: &'k [(ExprId, i64)]) -> Space<'k>
+    where
+        'a: 'k,
+    {
+        Space { known, memo: None, ..self }
     }
 
     /// Whether all conditions can have the values wanted of them at one moment, and what does it.
     pub fn solve(&self, wanted: &[(ExprId, bool)]) -> Answer {
         let question = Question { wanted, never: &[] };
+        if self.memo.is_some() && self.decide(&question) == Verdict::Never {
+            return Answer::Never;
+        }
         let Some(problem) = Problem::new(self, &question) else { return Answer::NotDecided };
         if let Some(answer) = problem.forced(&question) {
             return answer;
         }
         match Table::new(&problem) {
             Some(table) => table.answer(&question),
-            None => problem.solve(&question, false),
+            // Which values are told does not depend on what was asked before.
+            None => problem.solve(&question, false, &mut Told::default()).0,
         }
     }
 
@@ -242,12 +290,30 @@ impl<'a> Space<'a> {
     }
 
     fn decide(&self, question: &Question<'_>) -> Verdict {
+        let Some(memo) = self.memo else { return self.decide_anew(question) };
+        if memo.cases.borrow().answer(question) {
+            return Verdict::Possible;
+        }
+        let key = (question.wanted.into(), question.never.into());
+        if let Some(verdict) = memo.asked.borrow().get(&key) {
+            return *verdict;
+        }
+        let is_refuted = memo.told.borrow_mut().refutes(question);
+        let verdict = if is_refuted { Verdict::Never } else { self.decide_anew(question) };
+        let mut asked = memo.asked.borrow_mut();
+        if asked.len() < MOST_KEPT {
+            asked.insert(key, verdict);
+        }
+        verdict
+    }
+
+    fn decide_anew(&self, question: &Question<'_>) -> Verdict {
         let Some(problem) = Problem::new(self, question) else { return Verdict::NotDecided };
         let answer = match problem.forced(question) {
             Some(answer) => answer,
             None => match Table::new(&problem) {
                 Some(table) => return table.decide(question),
-                None => problem.solve(question, true),
+                None => self.decide_by_solver(&problem, question),
             },
         };
         match answer {
@@ -255,6 +321,17 @@ impl<'a> Space<'a> {
             Answer::Possible(_) => Verdict::Possible,
             Answer::NotDecided => Verdict::NotDecided,
         }
+    }
+
+    fn decide_by_solver(&self, problem: &Problem<'_, 'a>, question: &Question<'_>) -> Answer {
+        let Some(memo) = self.memo.filter(|_| problem.is_typed()) else {
+            return problem.solve(question, true, &mut Told::default()).0;
+        };
+        let (answer, values) = problem.solve(question, true, &mut memo.told.borrow_mut());
+        if let Answer::Possible(witness) = &answer {
+            memo.cases.borrow_mut().add(problem, &values, witness);
+        }
+        answer
     }
 
     /// What the form of conjuncts tells, which is most of what is asked. Sorts them, and drops what is TRUE.
@@ -366,6 +443,28 @@ impl<'a> Space<'a> {
             return Some(constant);
         }
         matches!(op, Comparison::Eq | Comparison::Ne).then_some(Constant::Int(value - all))
+    }
+
+    /// What a comparison says.
+    fn said(&self, op: Comparison, a: ExprId, b: ExprId) -> Said {
+        let bound = |op: Comparison, term: ExprId, constant: Constant| match self.in_width(op, term, constant) {
+            Some(constant) => Said::Bound(term, Bound::new(op, constant)),
+            None => Said::Unknown,
+        };
+        match (self.constant_of(a), self.constant_of(b)) {
+            (None, Some(constant)) => bound(op, a, constant),
+            (Some(constant), None) => bound(op.mirrored(), b, constant),
+            (Some(a), Some(b)) => {
+                let order = a.as_f64().partial_cmp(&b.as_f64());
+                order.map_or(Said::Unknown, |order| Said::Constant(op.holds(order)))
+            }
+            // What may be a floating-point number may be none, and differ from itself.
+            (None, None) if a == b && self.read_of(a).is_some_and(|it| matches!(it.0.ty, Type::Byte | Type::Word)) => {
+                Said::Constant(op.holds(Ordering::Equal))
+            }
+            (None, None) if a <= b => Said::Relation(op, a, b),
+            (None, None) => Said::Relation(op.mirrored(), b, a),
+        }
     }
 
     /// A term as a message names it.

@@ -14,6 +14,25 @@ const MAX_ATOMS: usize = 512;
 /// Whole numbers of a width that is not known: what 32 bits hold, with a sign or without.
 pub(super) const WIDEST: (i64, i64) = (i32::MIN as i64, u32::MAX as i64);
 
+/// What a comparison says.
+pub(super) enum Said {
+    Constant(bool),
+    /// Of a term.
+    Bound(ExprId, Bound),
+    /// Of two terms, in the order of their ids.
+    Relation(Comparison, ExprId, ExprId),
+    Unknown,
+}
+
+/// What atoms are about: laws tie those with one subject to one another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Subject {
+    /// A bit of a version.
+    Bit(ObjectId, u32),
+    Term(ExprId),
+    Relation(ExprId, ExprId),
+}
+
 /// A comparison of a term with a constant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bound {
@@ -28,7 +47,7 @@ pub(super) enum Constant {
 }
 
 impl Constant {
-    fn as_f64(self) -> f64 {
+    pub(super) fn as_f64(self) -> f64 {
         match self {
             // Whole numbers of PLC programs have at most 32 bits, which an f64 holds exactly.
             Self::Int(value) => value as f64,
@@ -85,13 +104,15 @@ pub(super) struct Tie {
 
 /// The conditions of a question.
 pub(super) struct Problem<'s, 'a> {
-    space: &'s Space<'a>,
+    pub(super) space: &'s Space<'a>,
     /// Sorted: operands before what they are operands of.
-    ids: Vec<ExprId>,
+    pub(super) ids: Vec<ExprId>,
     pub(super) gates: Vec<Gate>,
     /// The node of each, and what it says.
     pub(super) atoms: Vec<(usize, Atom)>,
     terms: Vec<Term>,
+    /// Memory of a term is that of another atom, and no law says what that means.
+    is_loose: bool,
 }
 
 /// Atoms with the values that they do not have together.
@@ -102,7 +123,7 @@ impl<'s, 'a> Problem<'s, 'a> {
     pub(super) fn new(space: &'s Space<'a>, question: &Question<'_>) -> Option<Self> {
         let ids = nodes(space, question)?;
         let (gates, atoms) = (Vec::with_capacity(ids.len()), Vec::with_capacity(ids.len()));
-        let mut problem = Self { space, gates, ids, atoms, terms: Vec::new() };
+        let mut problem = Self { space, gates, ids, atoms, terms: Vec::new(), is_loose: false };
         for at in 0..problem.ids.len() {
             let node = |id: ExprId| problem.node(id);
             let gate = match *space.exprs.get(problem.ids[at]) {
@@ -137,24 +158,32 @@ impl<'s, 'a> Problem<'s, 'a> {
 
     /// What a comparison says; its value where it has only one.
     fn comparison(&mut self, op: Comparison, a: ExprId, b: ExprId) -> Result<bool, Atom> {
-        let space = self.space;
-        match (space.constant_of(a), space.constant_of(b)) {
-            (None, Some(constant)) => Err(self.bound(op, a, constant)),
-            (Some(constant), None) => Err(self.bound(op.mirrored(), b, constant)),
-            (Some(a), Some(b)) => a.as_f64().partial_cmp(&b.as_f64()).map(|order| op.holds(order)).ok_or(Atom::Unknown),
-            // What may be a floating-point number may be none, and differ from itself.
-            (None, None) if a == b && space.read_of(a).is_some_and(|it| matches!(it.0.ty, Type::Byte | Type::Word)) => {
-                Ok(op.holds(Ordering::Equal))
-            }
-            (None, None) if a <= b => Err(Atom::Relation(op, a, b)),
-            (None, None) => Err(Atom::Relation(op.mirrored(), b, a)),
-        }
+        Err(match self.space.said(op, a, b) {
+            Said::Constant(value) => return Ok(value),
+            Said::Bound(term, bound) => Atom::Bound(self.term(term, bound.constant), bound),
+            Said::Relation(op, a, b) => Atom::Relation(op, a, b),
+            Said::Unknown => Atom::Unknown,
+        })
     }
 
-    fn bound(&mut self, op: Comparison, term: ExprId, constant: Constant) -> Atom {
-        match self.space.in_width(op, term, constant) {
-            Some(constant) => Atom::Bound(self.term(term, constant), Bound { op, constant }),
-            None => Atom::Unknown,
+    /// Whether it says of each term that it compares whether it is a whole number without asking what it is compared with:
+    /// only then what one question teaches holds for others.
+    pub(super) fn is_typed(&self) -> bool {
+        let is_float = |it: &Term| self.space.read_of(it.id).is_some_and(|it| it.0.ty == Type::Float);
+        self.terms.iter().all(|it| !it.is_float || is_float(it))
+    }
+
+    /// Whether what explains the values of its atoms leaves no law of their memory out.
+    pub(super) fn is_tight(&self) -> bool {
+        !self.is_loose
+    }
+
+    pub(super) fn subject(&self, atom: &Atom) -> Option<Subject> {
+        match *atom {
+            Atom::Bit(object, version) | Atom::Edge(object, version, _) => Some(Subject::Bit(object, version)),
+            Atom::Bound(term, _) => self.terms.get(term).map(|it| Subject::Term(it.id)),
+            Atom::Relation(_, a, b) => Some(Subject::Relation(a, b)),
+            Atom::Unknown => None,
         }
     }
 
@@ -190,12 +219,14 @@ impl<'s, 'a> Problem<'s, 'a> {
             };
             let is_shared = objects.iter().enumerate().any(overlaps);
             let mut bits = Vec::new();
+            let mut overlapping = 0;
             for (index, (_, atom)) in self.atoms.iter().enumerate() {
                 if let Atom::Bit(bit, of) | Atom::Edge(bit, of, _) = atom
                     && *of == version
                     && let Some(bit) = self.space.objects.get(*bit)
                     && bit.footprint.overlaps(&object.footprint)
                 {
+                    overlapping += 1;
                     let place = self.space.bit_of(bit, object).filter(|_| matches!(atom, Atom::Bit(..)));
                     bits.extend(place.map(|it| (index, it)));
                 }
@@ -203,8 +234,10 @@ impl<'s, 'a> Problem<'s, 'a> {
             let term = &mut self.terms[at];
             term.is_exact &= !is_shared;
             if term.width.is_some() && !term.is_float && !is_shared {
+                self.is_loose |= bits.len() < overlapping;
                 term.bits = bits;
             } else {
+                self.is_loose |= is_shared || overlapping > 0;
                 term.is_exact &= bits.is_empty();
             }
         }
@@ -215,39 +248,37 @@ impl<'s, 'a> Problem<'s, 'a> {
     pub(super) fn edge_laws(&self) -> Vec<[(usize, bool); 2]> {
         let mut laws = Vec::new();
         for (a, (_, first)) in self.atoms.iter().enumerate() {
-            let Atom::Edge(x, version, rising) = *first else { continue };
+            if !matches!(first, Atom::Edge(..)) {
+                continue;
+            }
             for (b, (_, second)) in self.atoms.iter().enumerate() {
-                match *second {
-                    Atom::Edge(y, of, _) if a < b && (x, version) == (y, of) => laws.push([(a, true), (b, true)]),
-                    Atom::Bit(y, of) if (x, version) == (y, of) => laws.push([(a, true), (b, !rising)]),
-                    _ => {}
+                if a < b || matches!(second, Atom::Bit(..)) {
+                    laws.extend(self.excluded(first, second).map(|(x, y)| [(a, x), (b, y)]));
                 }
             }
         }
         laws
     }
 
-    /// What two comparisons of one term, or of two terms with one another, exclude. It follows from [`Self::ties`], and is
-    /// what a solver wants to know before it starts.
-    pub(super) fn order_laws(&self) -> Vec<[(usize, bool); 2]> {
+    /// Values that two atoms do not have together: what edges are of their bits, and what two comparisons of one term, or of
+    /// two terms with one another, exclude. The latter follows from [`Self::ties`], and is what a solver wants to know
+    /// before it starts.
+    pub(super) fn excluded(&self, first: &Atom, second: &Atom) -> impl Iterator<Item = (bool, bool)> + use<> {
         const VALUES: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
-        let mut laws = Vec::new();
-        for (a, (_, first)) in self.atoms.iter().enumerate() {
-            for (b, (_, second)) in self.atoms.iter().enumerate().skip(a + 1) {
-                let agree: &dyn Fn(bool, bool) -> bool = match (*first, *second) {
-                    (Atom::Bound(x, one), Atom::Bound(y, other)) if x == y => {
-                        &move |p, q| self.terms[x].value(&[one.with(p), other.with(q)], &[]).is_some()
-                    }
-                    (Atom::Relation(one, x, y), Atom::Relation(other, u, v)) if (x, y) == (u, v) => {
-                        &move |p, q| order(&[with(one, p), with(other, q)]).is_some()
-                    }
-                    _ => continue,
-                };
-                let excluded = VALUES.into_iter().filter(|&(p, q)| !agree(p, q));
-                laws.extend(excluded.map(|(p, q)| [(a, p), (b, q)]));
+        let agree = |(p, q): (bool, bool)| match (*first, *second) {
+            (Atom::Edge(x, version, _), Atom::Edge(y, of, _)) if (x, version) == (y, of) => !(p && q),
+            (Atom::Edge(x, version, rising), Atom::Bit(y, of)) if (x, version) == (y, of) => !p || q == rising,
+            (Atom::Bit(x, version), Atom::Edge(y, of, rising)) if (x, version) == (y, of) => !q || p == rising,
+            (Atom::Bound(x, one), Atom::Bound(y, other)) if x == y => {
+                self.terms[x].value(&[one.with(p), other.with(q)], &[]).is_some()
             }
-        }
-        laws
+            (Atom::Relation(one, x, y), Atom::Relation(other, u, v)) if (x, y) == (u, v) => {
+                order(&[with(one, p), with(other, q)]).is_some()
+            }
+            _ => true,
+        };
+        let excluded = VALUES.map(|it| !agree(it));
+        VALUES.into_iter().zip(excluded).filter_map(|(values, is_excluded)| is_excluded.then_some(values))
     }
 
     /// The values that comparisons of one term, with its bits, have together; those of two terms with one another. `None`
@@ -345,9 +376,9 @@ impl<'s, 'a> Problem<'s, 'a> {
 
     /// Values of atoms that answer a question, told as values of objects: without those on which the answer does not
     /// depend. What no values of objects agree with is a conflict.
-    pub(super) fn witness(&self, mut values: Vec<Option<bool>>, question: &Question<'_>) -> Result<Witness, Conflict> {
-        self.forget_needless(&mut values, question);
-        self.explain(&values)
+    pub(super) fn witness(&self, values: &mut [Option<bool>], question: &Question<'_>) -> Result<Witness, Conflict> {
+        self.forget_needless(values, question);
+        self.explain(values)
     }
 
     /// Leaves out the atoms on which the wanted values do not depend, given the others.
@@ -496,11 +527,15 @@ fn order(ops: &[Comparison]) -> Option<Comparison> {
 }
 
 impl Bound {
+    pub(super) fn new(op: Comparison, constant: Constant) -> Self {
+        Self { op, constant }
+    }
+
     fn with(self, value: bool) -> Self {
         Self { op: with(self.op, value), ..self }
     }
 
-    fn holds(self, value: f64) -> bool {
+    pub(super) fn holds(self, value: f64) -> bool {
         value.partial_cmp(&self.constant.as_f64()).is_some_and(|order| self.op.holds(order))
     }
 }

@@ -95,8 +95,8 @@ impl<'p, 's, 'a> Table<'p, 's, 'a> {
         let rows = self.rows(question);
         let Some((word, bits)) = rows.iter().enumerate().find(|it| *it.1 != 0) else { return Answer::Never };
         let row = word * 64 + bits.trailing_zeros() as usize;
-        let values = (0..self.problem.atoms.len()).map(|it| Some(row >> it & 1 == 1)).collect();
-        self.problem.witness(values, question).map_or(Answer::NotDecided, Answer::Possible)
+        let mut values: Vec<_> = (0..self.problem.atoms.len()).map(|it| Some(row >> it & 1 == 1)).collect();
+        self.problem.witness(&mut values, question).map_or(Answer::NotDecided, Answer::Possible)
     }
 }
 

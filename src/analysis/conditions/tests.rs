@@ -117,13 +117,13 @@ proptest! {
         let objects: Vec<&Object> = objects.iter().collect();
         let mut exprs = Exprs::default();
         let [a, b, c] = [a, b, c].map(|it| it.build(&mut exprs));
-        let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7, known: &[] };
+        let space = Space::new(&exprs, Objects::Units(&objects), Family::Pl7);
         for never in [vec![], vec![[b, c]], vec![[a, b], [b, c]]] {
             for wanted in [vec![(a, true)], vec![(a, false), (c, true)]] {
                 let question = Question { wanted: &wanted, never: &never };
                 let problem = Problem::new(&space, &question).unwrap();
                 let Some(table) = Table::new(&problem) else { continue };
-                let by_solver = problem.solve(&question, false);
+                let by_solver = problem.solve(&question, false, &mut Told::default()).0;
                 prop_assert_ne!(&by_solver, &Answer::NotDecided);
                 prop_assert_eq!(table.decide(&question) == Verdict::Never, by_solver.is_never());
                 prop_assert_eq!(table.answer(&question).is_never(), by_solver.is_never());
@@ -138,7 +138,7 @@ proptest! {
         let objects: Vec<&Object> = objects.iter().collect();
         let mut exprs = Exprs::default();
         let wanted = [(a.build(&mut exprs), true), (b.build(&mut exprs), true)];
-        let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7, known: &[] };
+        let space = Space::new(&exprs, Objects::Units(&objects), Family::Pl7);
         let possible = State::all().any(|it| a.holds(&it) && b.holds(&it));
         let verdict = if possible { Verdict::Possible } else { Verdict::Never };
         prop_assert_eq!(space.together(&wanted.map(|it| it.0)), verdict, "with what the form tells");
@@ -157,6 +157,45 @@ proptest! {
                 let agreeing: Vec<State> = State::all().filter(in_range).collect();
                 prop_assert!(!agreeing.is_empty(), "{witness:?}");
                 prop_assert!(agreeing.iter().all(|it| a.holds(it) && b.holds(it)), "{witness:?}");
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// What questions teach changes no answer: each is as by trying all states, whatever was asked before.
+    #[test]
+    fn what_was_learnt_is_true(formulas in prop::collection::vec(formula(), 3..7), order in any::<u32>()) {
+        let objects = objects();
+        let objects: Vec<&Object> = objects.iter().collect();
+        let mut exprs = Exprs::default();
+        let ids: Vec<ExprId> = formulas.iter().map(|it| it.build(&mut exprs)).collect();
+        let memo = Memo::default();
+        let space = Space::new(&exprs, Objects::Units(&objects), Family::Pl7).learning(&memo);
+        let truths: Vec<Vec<bool>> = formulas.iter().map(|it| State::all().map(|state| it.holds(&state)).collect()).collect();
+        let count = ids.len();
+        for at in 0..count * count {
+            let (a, b) = (at / count, (at + order as usize) % count);
+            let (x, y) = (order >> (at % 32) & 1 == 1, order >> (at % 31) & 1 == 0);
+            let third = (a + 1) % count;
+            let wanted = [(ids[a], x), (ids[b], y)];
+            let never = [[ids[third], ids[b]]];
+            for never in [&never[..], &[]] {
+                let question = Question { wanted: &wanted, never };
+                let of = |at: usize| truths[at].iter().copied();
+                let mut moments = of(a).zip(of(b)).zip(of(third));
+                let is_possible = moments.any(|((first, second), third)| {
+                    first == x && second == y && (never.is_empty() || !(third && second))
+                });
+                prop_assert!(is_possible || !memo.cases.borrow().answer(&question), "no such case");
+                let problem = Problem::new(&space, &question).unwrap();
+                let answer = space.decide_by_solver(&problem, &question);
+                prop_assert_eq!(matches!(answer, Answer::Possible(_)), is_possible, "{:?}", answer);
+                prop_assert_eq!(answer.is_never(), !is_possible);
+                let has_case = memo.cases.borrow().answer(&question);
+                prop_assert!(!is_possible || has_case || !problem.is_tight(), "the case that was just found");
             }
         }
     }
@@ -184,7 +223,7 @@ fn answer(first: &str, second: &str) -> (Answer, Vec<String>) {
         })
         .collect();
     let objects: Vec<&Object> = model.objects.iter().collect();
-    let space = Space { exprs: &exprs, objects: Objects::Units(&objects), family: Family::Pl7, known: &[] };
+    let space = Space::new(&exprs, Objects::Units(&objects), Family::Pl7);
     let answer = space.solve(&wanted);
     let given = match &answer {
         Answer::Possible(witness) => witness.given.iter().map(|it| space.describe(it)).collect(),
@@ -232,7 +271,7 @@ fn receptivities() {
 
 /// Expressions about objects of which nothing is known.
 fn space(exprs: &Exprs) -> Space<'_> {
-    Space { exprs, objects: Objects::Unit(&[]), family: Family::Step7, known: &[] }
+    Space::new(exprs, Objects::Unit(&[]), Family::Step7)
 }
 
 fn bit(exprs: &mut Exprs, n: u32) -> ExprId {
@@ -350,10 +389,11 @@ fn versions_of_words_and_their_bits() {
     let (zero, word) = (exprs.int(0), exprs.read(ObjectId(4), 3));
     let is_zero = exprs.compare(Comparison::Eq, word, zero);
     let (same, later) = (exprs.read(ObjectId(6), 3), exprs.read(ObjectId(6), 5));
-    let space = Space { exprs: &exprs, objects: Objects::Unit(&objects), family: Family::Pl7, known: &[] };
+    let space = Space::new(&exprs, Objects::Unit(&objects), Family::Pl7);
     assert!(space.exclusive(is_zero, same));
     assert!(!space.exclusive(is_zero, later));
-    let space = Space { known: &[(word, 4)], ..space };
+    let known = [(word, 4)];
+    let space = space.knowing(&known);
     assert_eq!(space.constant(Exprs::TRUE, is_zero), Some(false));
     assert_eq!(space.constant(Exprs::TRUE, same), None, "bits of a word that no condition compares");
 }
@@ -391,6 +431,6 @@ fn what_takes_for_ever_is_not_decided() {
             wanted.push(exprs.not(both));
         }
     }
-    let space = Space { exprs: &exprs, objects: Objects::Unit(&objects), family: Family::Pl7, known: &[] };
+    let space = Space::new(&exprs, Objects::Unit(&objects), Family::Pl7);
     assert_eq!(space.together(&wanted), Verdict::NotDecided);
 }

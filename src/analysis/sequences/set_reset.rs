@@ -278,21 +278,20 @@ fn by_common_reset(trace: &mut Trace<'_>, firings: &[Firing]) -> Vec<(usize, usi
     }
     /// So many pairs are compared.
     const MOST: usize = 10_000;
-    let (mut found, mut left) = (Vec::new(), MOST);
+    let mut pairs = Vec::new();
     for (reset, it) in firings.iter().enumerate().filter(|it| it.1.sets.is_empty()) {
         for &(step, _) in it.resets.iter().filter(|step| it.asks_for(step.0)) {
             for &set in setters.get(&step).into_iter().flatten() {
-                if firings[set].reset_of(step).is_none() && left > 0 {
-                    left -= 1;
-                    let [whole, part] = [firings[set].condition, it.condition].map(|it| trace.expand(it));
-                    if trace.solve(&[(whole, true), (part, false)]).is_never() {
-                        found.push((set, reset, step));
-                    }
+                if firings[set].reset_of(step).is_none() && pairs.len() < MOST {
+                    let conditions = [firings[set].condition, it.condition].map(|it| trace.expand(it));
+                    pairs.push((conditions, (set, reset, step)));
                 }
             }
         }
     }
-    found
+    let space = trace.space();
+    pairs.retain(|([whole, part], _)| space.implies(*whole, *part));
+    pairs.into_iter().map(|it| it.1).collect()
 }
 
 /// Bits that hand over to one another, in the order of the program.

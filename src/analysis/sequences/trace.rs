@@ -10,7 +10,7 @@ use smol_str::SmolStr;
 
 use super::code::{Act, How};
 use crate::analysis::Site;
-use crate::analysis::conditions::{Answer, Objects, Space};
+use crate::analysis::conditions::{Answer, Memo, Objects, Space};
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::{Context, ProgramIndex};
 use crate::model::entity::{BlockName, Family};
@@ -58,6 +58,7 @@ pub struct Trace<'a> {
     memories: FxHashMap<ObjectId, ExprId>,
     expanded: FxHashMap<ExprId, ExprId>,
     flattened: FxHashMap<ExprId, ExprId>,
+    memo: Memo,
 }
 
 /// Objects of the program and of runs of its blocks.
@@ -148,6 +149,7 @@ impl<'a> Trace<'a> {
             memories: FxHashMap::default(),
             expanded: FxHashMap::default(),
             flattened: FxHashMap::default(),
+            memo: Memo::default(),
         };
         let mut runner = Runner {
             program,
@@ -264,7 +266,7 @@ impl<'a> Trace<'a> {
     }
 
     pub fn space(&self) -> Space<'_> {
-        Space { exprs: &self.exprs, objects: Objects::Units(&self.objects), family: self.family, known: &[] }
+        Space::new(&self.exprs, Objects::Units(&self.objects), self.family).learning(&self.memo)
     }
 
     pub fn solve(&self, wanted: &[(ExprId, bool)]) -> Answer {

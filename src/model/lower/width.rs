@@ -82,9 +82,12 @@ impl Data {
         Self { sum_of_words, ..Self::new(bits, kind, SmolStr::default()) }
     }
 
-    pub(super) fn converted(by: Conversion) -> Option<Self> {
+    /// The result of a conversion.
+    pub(super) fn converted(by: Conversion, operand: Option<&Self>) -> Option<Self> {
         let (bits, kind) = match by {
             Conversion::BcdToInt | Conversion::NegateInt => (16, Kind::Integer),
+            // Four digits, of which `BTI` takes three: no more than 9999.
+            Conversion::BcdToDint if operand.is_some_and(|it| it.bits <= 16) => (16, Kind::Integer),
             Conversion::BcdToDint | Conversion::IntToDint | Conversion::NegateDint => (32, Kind::Integer),
             Conversion::Round | Conversion::RoundUp | Conversion::RoundDown | Conversion::Truncate => {
                 (32, Kind::Integer)

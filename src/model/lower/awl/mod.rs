@@ -414,6 +414,7 @@ impl Machine {
             }
             Op::Convert(by) => {
                 self.ignores_rlo(range, instr);
+                let data = Data::converted(by, self.accumulators[0].data.as_ref());
                 if matches!(by, Conversion::OnesComplementInt | Conversion::OnesComplementDint) {
                     let value = self.accumulator(0);
                     let all = self.b.exprs().int(-1);
@@ -422,7 +423,7 @@ impl Machine {
                 } else {
                     self.opaque_result();
                 }
-                self.accumulators[0].data = Data::converted(by).filter(|_| !self.is_step5());
+                self.accumulators[0].data = data.filter(|_| !self.is_step5());
             }
             Op::Real(_) => {
                 self.ignores_rlo(range, instr);
