@@ -78,7 +78,9 @@ impl Told {
                 vars.push(var);
                 continue;
             }
-            let var = self.solver.new_var_default();
+            // The values of the atoms say those of all other nodes.
+            let is_atom = matches!(gate, Gate::Atom(_));
+            let var = self.solver.new_var(lbool::UNDEF, is_atom);
             self.nodes.insert(id, var);
             vars.push(var);
             self.define(gate, var, &vars);
@@ -158,7 +160,7 @@ impl Told {
         if let Some(&both) = self.pairs.get(&pair) {
             return both;
         }
-        let both = self.solver.new_var_default();
+        let both = self.solver.new_var(lbool::UNDEF, false);
         self.pairs.insert(pair, both);
         self.define(&Gate::And(0, 1), both, &[a, b]);
         both
