@@ -67,7 +67,8 @@ fn parse(criterion: &mut Criterion) {
                 let text = text.as_str();
                 let units = split::split(text, detected, &SplitHint::default());
                 bencher.iter_with_large_drop(|| {
-                    let parse = |range: std::ops::Range<usize>, language| syntax::parse(language, &text[range]);
+                    let mut memo = syntax::Memo::default();
+                    let mut parse = |range: std::ops::Range<usize>, language| memo.parse(language, &text[range]);
                     units.iter().map(|it| parse(it.range.into(), it.language)).collect::<Vec<_>>()
                 });
             });

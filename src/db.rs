@@ -7,6 +7,7 @@
 mod memory;
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::rc::Rc;
@@ -168,10 +169,15 @@ pub fn tree<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Parse {
     parse(db, unit)
 }
 
+thread_local! {
+    /// What the units that a thread reads have in common. A tree is the same with any.
+    static MEMO: RefCell<syntax::Memo> = RefCell::default();
+}
+
 fn parse(db: &dyn Db, unit: Unit<'_>) -> Parse {
     let text = unit.text(db);
     match unit.unsupported(db) {
-        None => syntax::parse(unit.language(db), text),
+        None => MEMO.with_borrow_mut(|memo| memo.parse(unit.language(db), text)),
         // A file of nothing else is one that is not read.
         Some(detect::unsupported::PL7_2_LANGUAGE) if unread_form(db, unit.file(db)).is_none() => {
             let message =

@@ -10,7 +10,7 @@ use SyntaxKind::{
 use logos::{Lexer, Logos};
 
 use super::parser::Tokens;
-use super::{AstNode, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken};
+use super::{AstNode, Language, Memo, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
@@ -121,8 +121,12 @@ fn lex(text: &str) -> Tokens {
 
 /// Parses the text around programs. Total and linear for every text; nothing in it is an error.
 pub fn parse(text: &str) -> Parse {
+    super::parse(Language::Exchange, text)
+}
+
+pub(super) fn parse_with(text: &str, memo: &mut Memo) -> Parse {
     let tokens = lex(text);
-    let mut p = Parser::new(text, &tokens);
+    let mut p = Parser::new(text, &tokens, memo);
     while !p.at_end() {
         if p.at(BlockMark) {
             block(&mut p);

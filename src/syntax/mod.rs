@@ -8,6 +8,7 @@ use rowan::TextRange;
 
 mod builder;
 mod kind;
+mod memo;
 mod node;
 mod packed;
 mod parser;
@@ -22,6 +23,8 @@ pub mod words;
 pub mod xref;
 
 pub use kind::SyntaxKind;
+use memo::Grammar;
+pub use memo::Memo;
 pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
 use parser::Tokens;
 pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError};
@@ -90,21 +93,25 @@ impl Language {
     }
 }
 
-/// Parses one unit. Total and linear for every text.
+/// Parses one unit. Total and linear for every text. Who parses many keeps a [`Memo`].
 pub fn parse(language: Language, text: &str) -> Parse {
+    parse_with(language, text, &mut Memo::for_text(text))
+}
+
+fn parse_with(language: Language, text: &str, memo: &mut Memo) -> Parse {
     match language {
-        Language::Awl(mnemonics) => awl::parse(text, mnemonics),
-        Language::Step5(mnemonics) => step5::parse(text, mnemonics),
-        Language::Step5Symbols => step5::symbols::parse(text),
-        Language::Pl7Il => pl7::parse_il(text),
-        Language::Pl7St => pl7::parse_st(text),
-        Language::Pl7Gr7 | Language::Sfc => pl7::parse_chart(text),
-        Language::Pl7Ld => pl7::parse_ld(text),
-        Language::Pl72Ld => pl7::parse_pl7_2_ld(text),
-        Language::Pl72Gr7 | Language::Pl72Sfc => pl7::parse_pl7_2_chart(text),
-        Language::Exchange => exchange::parse(text),
-        Language::SymbolTable => symbol_table::parse(text),
-        Language::Pl7Xref => xref::parse(text),
+        Language::Awl(mnemonics) => awl::parse_with(text, mnemonics, memo),
+        Language::Step5(mnemonics) => step5::parse_with(text, mnemonics, memo),
+        Language::Step5Symbols => step5::symbols::parse_with(text, memo),
+        Language::Pl7Il => pl7::parse_with(text, Grammar::Il, memo),
+        Language::Pl7St => pl7::parse_with(text, Grammar::St, memo),
+        Language::Pl7Ld => pl7::parse_with(text, Grammar::Ld, memo),
+        Language::Pl7Gr7 | Language::Sfc => pl7::parse_with(text, Grammar::Chart, memo),
+        Language::Pl72Ld => pl7::parse_with(text, Grammar::Pl72Ld, memo),
+        Language::Pl72Gr7 | Language::Pl72Sfc => pl7::parse_with(text, Grammar::Pl72Chart, memo),
+        Language::Exchange => exchange::parse_with(text, memo),
+        Language::SymbolTable => symbol_table::parse_with(text, memo),
+        Language::Pl7Xref => xref::parse_with(text, memo),
     }
 }
 
@@ -112,7 +119,8 @@ pub fn parse(language: Language, text: &str) -> Parse {
 pub fn opaque(text: &str, error: Option<(TextRange, &str)>) -> Parse {
     let mut tokens = Tokens::default();
     tokens.push(SyntaxKind::Unknown, text.len());
-    let mut parser = Parser::new(text, &tokens);
+    let mut memo = Memo::for_text("");
+    let mut parser = Parser::new(text, &tokens, &mut memo);
     let node = parser.start();
     parser.bump();
     parser.complete(node, SyntaxKind::Error);

@@ -22,38 +22,74 @@ pub(super) const fn pack(word: &[u8]) -> u128 {
     packed & !CASE
 }
 
-/// The words of a list, to be found by binary search.
+/// Slots of an [`Index`]: at least twice as many as words, so that probing ends.
+const SLOTS: usize = 1024;
+
+/// Longer words count as of the last length.
+const LENGTHS: usize = 32;
+
+/// The words of a list, to be found by open addressing.
 pub(super) struct Index<const N: usize> {
     words: [&'static str; N],
-    /// Each with its place in the list, in the order of the keys.
-    keys: [(u128, usize); N],
+    keys: [u128; N],
+    /// Place in the list, counted from 1; 0 for a free slot.
+    slots: [u16; SLOTS],
+    /// By length, which letters the words start with: most of what is looked up is no word.
+    starts: [u32; LENGTHS],
 }
 
 impl<const N: usize> Index<N> {
     pub(super) const fn new(words: [&'static str; N]) -> Self {
-        let mut keys = [(0, 0); N];
-        let mut filled = 0;
-        while filled < N {
-            let key = key(words[filled].as_bytes());
-            let mut place = filled;
-            while place > 0 && keys[place - 1].0 > key {
-                keys[place] = keys[place - 1];
-                place -= 1;
+        assert!(N <= SLOTS / 2, "probing ends at a free slot");
+        let (mut keys, mut slots, mut starts) = ([0; N], [0; SLOTS], [0; LENGTHS]);
+        let mut at = 0;
+        while at < N {
+            keys[at] = key(words[at].as_bytes());
+            starts[length(words[at].as_bytes())] |= start(words[at].as_bytes()[0]);
+            let mut slot = slot(keys[at]);
+            while slots[slot] != 0 {
+                slot = (slot + 1) % SLOTS;
             }
-            keys[place] = (key, filled);
-            filled += 1;
+            at += 1;
+            slots[slot] = at as u16;
         }
-        Self { words, keys }
+        Self { words, keys, slots, starts }
     }
 
     /// Place in the list of a word in any case.
+    #[inline]
     pub(super) fn find(&self, word: &str) -> Option<usize> {
+        if self.starts[length(word.as_bytes())] & start(*word.as_bytes().first()?) == 0 {
+            return None;
+        }
         let key = key(word.as_bytes());
-        let at = self.keys[self.keys.binary_search_by_key(&key, |it| it.0).ok()?].1;
+        let mut slot = slot(key);
+        let at = loop {
+            let at = usize::from(self.slots[slot]).checked_sub(1)?;
+            if self.keys[at] == key {
+                break at;
+            }
+            slot = (slot + 1) % SLOTS;
+        };
         let found = self.words[at];
         // The key of a long word leaves some of it out.
         (found.len() == word.len() && (word.len() <= 16 || found.eq_ignore_ascii_case(word))).then_some(at)
     }
+}
+
+const fn length(word: &[u8]) -> usize {
+    if word.len() < LENGTHS { word.len() } else { LENGTHS - 1 }
+}
+
+/// A letter in any case.
+const fn start(letter: u8) -> u32 {
+    1 << (letter % 32)
+}
+
+const fn slot(key: u128) -> usize {
+    const MULTIPLIER: u64 = 0x9E37_79B9_7F4A_7C15;
+    let mixed = (key as u64 ^ ((key >> 64) as u64).rotate_left(29)).wrapping_mul(MULTIPLIER);
+    (mixed >> 48) as usize % SLOTS
 }
 
 /// The [`Index`] of a list by the field that holds the word of each entry.

@@ -6,6 +6,7 @@
 use logos::{Lexer, Logos};
 
 use super::SyntaxKind;
+use super::memo::{Grammar, Memo};
 use super::parser::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -132,19 +133,49 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
     }
 }
 
-/// Letters before the number of an object: of PL7-2 (PL72:253-310), then those that PL7 gives to the same objects.
-const OBJECT_LETTERS: [&str; 38] = [
-    "I", "O", "B", "SY", "X", "S", "W", "CW", "SW", "COM", "IW", "OW", "T", "C", "FC", "DT", "DTP", "M", "R", "D",
-    "TXT", "E", "A", "Q", "K", "MW", "KW", "QW", "MB", "KB", "ID", "QD", "MD", "KD", "TM", "MN", "DR", "XM",
-];
+/// Whether these are the letters before the number of an object: of PL7-2 (PL72:253-310), then those that PL7 gives to
+/// the same objects.
+fn are_object_letters(letters: &[u8]) -> bool {
+    let mut upper = [0; 3];
+    let Some(upper) = upper.get_mut(..letters.len()) else { return false };
+    upper.copy_from_slice(letters);
+    upper.make_ascii_uppercase();
+    matches!(
+        &*upper,
+        [b'I' | b'O' | b'B' | b'X' | b'S' | b'W' | b'T' | b'C' | b'M' | b'R' | b'D' | b'E' | b'A' | b'Q' | b'K']
+            | b"SY"
+            | b"CW"
+            | b"SW"
+            | b"COM"
+            | b"IW"
+            | b"OW"
+            | b"FC"
+            | b"DT"
+            | b"DTP"
+            | b"TXT"
+            | b"MW"
+            | b"KW"
+            | b"QW"
+            | b"MB"
+            | b"KB"
+            | b"ID"
+            | b"QD"
+            | b"MD"
+            | b"KD"
+            | b"TM"
+            | b"MN"
+            | b"DR"
+            | b"XM"
+    )
+}
 
 /// Whether a word starts an address. Letters that are PL7's or the other vendor's alone need an item behind, for names of
 /// actions look like them: `A1`.
 fn is_object(word: &str, rest: &str) -> bool {
-    let letters = word.trim_end_matches(|it: char| it.is_ascii_digit());
-    let is_foreign = ["E", "A", "Q", "K"].iter().any(|it| it.eq_ignore_ascii_case(letters));
+    let letters = word.trim_end_matches(|it: char| it.is_ascii_digit()).as_bytes();
+    let is_foreign = matches!(letters, [b'E' | b'e' | b'A' | b'a' | b'Q' | b'q' | b'K' | b'k']);
     word.starts_with('%')
-        || OBJECT_LETTERS.iter().any(|it| it.eq_ignore_ascii_case(letters))
+        || are_object_letters(letters)
             && (!is_foreign || matches!(rest.as_bytes(), [b',' | b'.', digit, ..] if digit.is_ascii_digit()))
 }
 
@@ -196,13 +227,27 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 }
 
 /// The tokens of the content of a block. Their lengths add up to the text, for every text.
-pub(super) fn lex(text: &str) -> Tokens {
+pub(super) fn lex(text: &str, grammar: Grammar, memo: &mut Memo) -> Tokens {
     let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut lexer = Lexeme::lexer(text);
-    while let Some(lexeme) = lexer.next() {
-        tokens.push(lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from), lexer.slice().len());
-        let (blanks, _) = tokens.push_blanks(lexer.remainder());
+    // Whether a piece may start here.
+    let has_pieces = grammar.has_pieces();
+    let mut starts = has_pieces;
+    loop {
+        if starts && let Some((piece, more)) = tokens.pl7_piece(memo, grammar, text, lexer.remainder()) {
+            lexer.bump(piece);
+            let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
+            lexer.bump(blanks);
+            starts = more || begins_line;
+            continue;
+        }
+        let Some(lexeme) = lexer.next() else { break };
+        let kind = lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from);
+        tokens.push(kind, lexer.slice().len());
+        tokens.end_piece(memo, text);
+        let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
         lexer.bump(blanks);
+        starts = begins_line && has_pieces || grammar.starts_piece(kind);
     }
     tokens
 }
@@ -214,6 +259,10 @@ mod tests {
     use super::*;
     use crate::syntax::parser::Token;
     use SyntaxKind::*;
+
+    fn lex(text: &str) -> Tokens {
+        super::lex(text, Grammar::Pl72Ld, &mut Memo::for_text(text))
+    }
 
     fn kinds(text: &str) -> Vec<SyntaxKind> {
         lex(text).iter().map(|it| it.kind).filter(|it| *it != Whitespace).collect()

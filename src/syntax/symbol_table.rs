@@ -15,10 +15,14 @@ use super::SyntaxKind::{
     Address, Comma, Error, FreeText, Ident, Newline, ObjectRef, TypeRef, VarDecl, VarName, Whitespace,
 };
 use super::parser::Tokens;
-use super::{Parse, Parser, SyntaxKind};
+use super::{Language, Memo, Parse, Parser, SyntaxKind};
 
 /// Parses one table. Total and linear for every text; what is no row is an error node.
 pub fn parse(text: &str) -> Parse {
+    super::parse(Language::SymbolTable, text)
+}
+
+pub(super) fn parse_with(text: &str, memo: &mut Memo) -> Parse {
     let mut rows = Rows::default();
     let form = Form::of(text);
     let mut dif = Dif::Header;
@@ -33,7 +37,7 @@ pub fn parse(text: &str) -> Parse {
         }
         rows.push(Newline, end.len());
     }
-    rows.parse(text)
+    rows.parse(text, memo)
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -160,9 +164,9 @@ impl Rows {
         self.push(Whitespace, line.len() - start - line.trim().len());
     }
 
-    pub(in crate::syntax) fn parse(mut self, text: &str) -> Parse {
+    pub(in crate::syntax) fn parse(mut self, text: &str, memo: &mut Memo) -> Parse {
         self.close();
-        let mut p = Parser::new(text, &self.tokens);
+        let mut p = Parser::new(text, &self.tokens, memo);
         let mut row = None;
         for step in &self.steps {
             match *step {

@@ -5,15 +5,19 @@ use super::SyntaxKind::{
     Error, FreeText, Heading, Ident, Newline, ObjectRef, Unknown, Whitespace, XrefEntry, XrefPlace,
 };
 use super::parser::Tokens;
-use super::{Parse, Parser, SyntaxKind};
+use super::{Language, Memo, Parse, Parser, SyntaxKind};
 
 /// Ways in which an entry may use its object: reads, writes, executes, writes by a function, reads and writes by one.
 pub const MODES: [&str; 5] = ["R", "W", "E", "O", "V"];
 
 /// Parses one unit. Total and linear for every text; what is no entry is an error node.
 pub fn parse(text: &str) -> Parse {
+    super::parse(Language::Pl7Xref, text)
+}
+
+pub(super) fn parse_with(text: &str, memo: &mut Memo) -> Parse {
     let tokens = lex(text);
-    let mut p = Parser::new(text, &tokens);
+    let mut p = Parser::new(text, &tokens, memo);
     while !p.at_end() {
         let m = p.start();
         let kind = match (p.current(), p.nth(1)) {

@@ -201,6 +201,7 @@ pub(super) fn lex(text: &str) -> Tokens {
             }
             Ok(Lexeme::LineComment | Lexeme::BlockComment(true)) => {
                 out.push(SyntaxKind::Comment, lexer.slice().len());
+                at_start |= begin_line(&mut out, &mut lexer);
                 continue;
             }
             Ok(Lexeme::BlockComment(false)) => {
@@ -218,7 +219,7 @@ pub(super) fn lex(text: &str) -> Tokens {
             Ok(Lexeme::Title) => {
                 out.push(SyntaxKind::Ident, lexer.slice().len());
                 free_text(&mut out, &mut lexer, b'=', line_end);
-                at_start = false;
+                at_start = begin_line(&mut out, &mut lexer);
                 continue;
             }
             Ok(Lexeme::HeaderKey) if in_header => {
@@ -237,6 +238,7 @@ pub(super) fn lex(text: &str) -> Tokens {
                     lexer.bump(numbered + digits);
                     free_text(&mut out, &mut lexer, b':', line_end);
                 }
+                begin_line(&mut out, &mut lexer);
                 in_header = false;
                 at_start = true;
                 continue;
@@ -338,6 +340,14 @@ pub(super) fn lex(text: &str) -> Tokens {
         at_start = begins_line;
     }
     out
+}
+
+/// The line feed behind a token, if code goes on behind it.
+fn begin_line(out: &mut Tokens, lexer: &mut logos::Lexer<'_, Lexeme>) -> bool {
+    let is_end = matches!(lexer.remainder().as_bytes(), [b'\n' | b'\r', ..]);
+    let (blanks, begins_line) = if is_end { out.push_blanks(lexer.remainder()) } else { (0, false) };
+    lexer.bump(blanks);
+    begins_line
 }
 
 /// After a keyword: if `separator` follows on the line, the separator and the text after it.

@@ -20,15 +20,19 @@ pub mod instruction;
 #[cfg(test)]
 mod tests;
 
-use super::{Mnemonics, Parse, Parser};
+use super::{Language, Memo, Mnemonics, Parse, Parser};
 
 pub(in crate::syntax) use grammar::keywords;
 pub use vote::vote;
 
 /// Parses one unit: a block, a listing, or several of them.
 pub fn parse(text: &str, mnemonics: Mnemonics) -> Parse {
+    super::parse(Language::Awl(mnemonics), text)
+}
+
+pub(super) fn parse_with(text: &str, mnemonics: Mnemonics, memo: &mut Memo) -> Parse {
     let tokens = lexer::lex(text);
-    let mut parser = Parser::new(text, &tokens);
+    let mut parser = Parser::new(text, &tokens, memo);
     grammar::root(&mut parser, mnemonics);
     if let Some(len) = tokens.unclosed_comment() {
         grammar::unclosed_comment(&mut parser, text.len(), len);

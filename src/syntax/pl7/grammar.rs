@@ -11,7 +11,8 @@ use super::dfb;
 use super::functions;
 use super::lexer::lex;
 use super::word::{self, Keyword};
-use crate::syntax::{MAX_DEPTH, Marker, Parse, Parser, SyntaxKind, pl72};
+use crate::syntax::parser::Known;
+use crate::syntax::{MAX_DEPTH, Marker, Memo, Parse, Parser, SyntaxKind, memo, pl72};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dialect {
@@ -64,22 +65,23 @@ pub(super) struct Grammar<'p, 't> {
     pub(super) state: State<'t>,
 }
 
-pub(super) fn parse(text: &str, dialect: Dialect, code: Code) -> Parse {
-    parse_with(text, dialect, code, false)
-}
-
-/// Parses a chart, whose actions and receptivities say their own languages.
-pub(super) fn parse_chart(text: &str, code: Code) -> Parse {
-    parse_with(text, Dialect::St, code, true)
-}
-
-fn parse_with(text: &str, dialect: Dialect, code: Code, is_chart: bool) -> Parse {
+/// Parses a unit. The actions and receptivities of a chart say their own languages.
+pub(in crate::syntax) fn parse_with(text: &str, grammar: memo::Grammar, memo: &mut Memo) -> Parse {
+    use memo::Grammar as Of;
+    let (dialect, code) = match grammar {
+        Of::Il => (Dialect::Il, Code::Pl7),
+        Of::Ld => (Dialect::Ld, Code::Pl7),
+        Of::Pl72Ld => (Dialect::Ld, Code::Pl72),
+        Of::Pl72Chart => (Dialect::St, Code::Pl72),
+        Of::St | Of::Chart => (Dialect::St, Code::Pl7),
+    };
+    let is_chart = matches!(grammar, Of::Chart | Of::Pl72Chart);
     let tokens = match code {
-        Code::Pl7 => lex(text),
-        Code::Pl72 => pl72::lex(text),
+        Code::Pl7 => lex(text, grammar, memo),
+        Code::Pl72 => pl72::lex(text, grammar, memo),
     };
     let open_end = tokens.unclosed_comment().is_some();
-    let mut parser = Parser::new(text, &tokens);
+    let mut parser = Parser::new(text, &tokens, memo);
     let has_rungs = is_chart || dialect == Dialect::Ld;
     let words = parser.words(|text| Keyword::of(text).filter(|it| has_rungs || !it.is_of_ladder()));
     let is_dfb = !is_chart && code == Code::Pl7 && dfb::is_type(&parser);
@@ -157,10 +159,30 @@ impl<'t> Grammar<'_, 't> {
         }
     }
 
+    /// What the node of a piece depends on beside its text, where it is read as a `part`.
+    pub(super) fn context(&self, part: Part, piece: &Known) -> u32 {
+        let dialect = match self.state.dialect {
+            Dialect::Il => 0,
+            Dialect::St => 1,
+            Dialect::Ld => 2,
+        };
+        // A piece has no more tokens than bits are left.
+        let here = self.p.position();
+        let stops = self.state.stops.get(here..here + piece.len).unwrap_or_default();
+        let stops = stops.iter().fold(0, |stops, it| stops << 1 | u32::from(*it));
+        (stops << 2 | dialect) << 4 | u32::from(self.state.is_receptivity) << 3 | part as u32
+    }
+
     /// sentence = ['(*PHRASE*)'] ['!'] [label] content ['(*END_PHRASE*)']
     ///
     /// A label opens a sentence even where its `!` is missing, because it stands nowhere else (PL7:2989, 3489).
     pub(super) fn sentence(&mut self) {
+        let known = self.p.piece().map(|it| (self.context(Part::Sentence, &it), it));
+        if let Some((context, piece)) = &known
+            && self.p.recall(piece, *context)
+        {
+            return;
+        }
         let m = self.p.start();
         let start = self.p.position();
         let is_framed = self.p.eat(SentenceStart);
@@ -208,6 +230,12 @@ impl<'t> Grammar<'_, 't> {
             self.p.abandon(m);
         } else {
             self.p.complete(m, Sentence);
+            if is_framed
+                && is_closed
+                && let Some((context, piece)) = known
+            {
+                self.p.remember(&piece, context, false);
+            }
         }
     }
 
@@ -345,6 +373,7 @@ impl<'t> Grammar<'_, 't> {
     /// Reports what is missing here: at the token that stands in its place, or behind the line that ends without it.
     pub(super) fn expected(&mut self, what: &str) {
         if self.state.muted || (self.p.at_end() && self.state.open_end) {
+            self.p.fault();
             self.state.muted = true;
         } else if self.p.newline_before() && self.p.position() > 0 {
             self.error_at(self.p.previous_range(), format!("expected {what} after this"));
@@ -498,6 +527,17 @@ impl<'t> Grammar<'_, 't> {
     fn at_header_end(&self) -> bool {
         matches!(self.keyword(), Some(Keyword::Then | Keyword::Do | Keyword::To))
     }
+}
+
+/// What may be a piece of text that is read before.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Part {
+    /// With its frame.
+    Sentence,
+    Cell,
+    Row,
+    /// Step, link or connector of a chart, before what starts an element.
+    Element,
 }
 
 /// What a sentence holds so far.

@@ -8,7 +8,7 @@ use SyntaxKind::{
     RParen, Rung, RungRow, Semicolon,
 };
 
-use super::grammar::{Code, Dialect, Grammar};
+use super::grammar::{Code, Dialect, Grammar, Part};
 use super::ladder_words::{self, Shape};
 use super::word::{self, Keyword};
 use crate::syntax::SyntaxKind;
@@ -78,6 +78,12 @@ impl Grammar<'_, '_> {
     ///
     /// Consumes at least one token.
     fn row(&mut self) {
+        let known = self.p.piece().map(|it| (self.context(Part::Row, &it), it));
+        if let Some((context, piece)) = &known
+            && self.p.recall(piece, *context)
+        {
+            return;
+        }
         let m = self.p.start();
         loop {
             self.state.muted = false;
@@ -116,10 +122,19 @@ impl Grammar<'_, '_> {
             }
         }
         self.p.complete(m, RungRow);
+        if let Some((context, piece)) = known {
+            self.p.remember(&piece, context, false);
+        }
     }
 
     /// One cell. Consumes at least one token that ends neither row nor rung.
     fn cell(&mut self) {
+        let known = self.p.piece().map(|it| (self.context(Part::Cell, &it), it));
+        if let Some((context, piece)) = &known
+            && self.p.recall(piece, *context)
+        {
+            return;
+        }
         let m = self.p.start();
         let word = if self.p.at(Ident) { ladder_words::lookup(self.p.current_text()) } else { None };
         let Some(word) = word else {
@@ -162,6 +177,9 @@ impl Grammar<'_, '_> {
             shape => self.cell_operand(shape),
         }
         self.p.complete(m, Cell);
+        if let Some((context, piece)) = known {
+            self.p.remember(&piece, context, false);
+        }
     }
 
     /// What stands in the parentheses behind a word.

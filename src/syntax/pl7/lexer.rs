@@ -6,6 +6,7 @@
 use logos::{Lexer, Logos};
 
 use crate::syntax::SyntaxKind;
+use crate::syntax::memo::{Grammar, Memo};
 use crate::syntax::parser::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,20 +139,43 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 }
 
 /// The lengths of the tokens add up to the text, for every text.
-pub(super) fn lex(text: &str) -> Tokens {
+pub(super) fn lex(text: &str, grammar: Grammar, memo: &mut Memo) -> Tokens {
+    if grammar.has_pieces() { lex_with::<true>(text, grammar, memo) } else { lex_with::<false>(text, grammar, memo) }
+}
+
+fn lex_with<const PIECES: bool>(text: &str, grammar: Grammar, memo: &mut Memo) -> Tokens {
     let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
     let mut lexer = Lexeme::lexer(text);
-    while let Some(lexeme) = lexer.next() {
+    // Whether a piece may start here.
+    let mut starts = PIECES;
+    loop {
+        if PIECES
+            && starts
+            && let Some((piece, more)) = tokens.pl7_piece(memo, grammar, text, lexer.remainder())
+        {
+            lexer.bump(piece);
+            let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
+            lexer.bump(blanks);
+            starts = more || begins_line;
+            continue;
+        }
+        let Some(lexeme) = lexer.next() else { break };
         let kind = lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from);
         tokens.push(kind, lexer.slice().len());
         // Only here does a `:4` or `.T` belong to what stands before it: `Pump:X4`, `%MW50[%MW5]:10`.
-        if matches!(kind, SyntaxKind::Ident | SyntaxKind::RBrack | SyntaxKind::Number) {
+        if matches!(kind, SyntaxKind::Ident | SyntaxKind::RBrack | SyntaxKind::Number)
+            && matches!(lexer.remainder().as_bytes(), [b':' | b'.', ..])
+        {
             let suffix = suffix_length(lexer.remainder().as_bytes(), kind == SyntaxKind::RBrack);
             lexer.bump(suffix);
             tokens.push(SyntaxKind::ObjectSuffix, suffix);
         }
-        let (blanks, _) = tokens.push_blanks(lexer.remainder());
+        if PIECES {
+            tokens.end_piece(memo, text);
+        }
+        let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
         lexer.bump(blanks);
+        starts = PIECES && (begins_line || grammar.starts_piece(kind));
     }
     tokens
 }
@@ -176,6 +200,10 @@ mod tests {
     use super::*;
     use crate::syntax::parser::Token;
     use SyntaxKind::*;
+
+    fn lex(text: &str) -> Tokens {
+        super::lex(text, Grammar::St, &mut Memo::for_text(text))
+    }
 
     fn kinds(text: &str) -> Vec<SyntaxKind> {
         lex(text).iter().map(|it| it.kind).filter(|it| *it != Whitespace).collect()

@@ -24,22 +24,22 @@ mod word;
 #[cfg(test)]
 mod tests;
 
-use super::Parse;
-use grammar::{Code, Dialect};
+use super::{Language, Parse};
+pub(super) use grammar::parse_with;
 
 /// Parses one unit of instruction list. Total and linear for every text.
 pub fn parse_il(text: &str) -> Parse {
-    grammar::parse(text, Dialect::Il, Code::Pl7)
+    super::parse(Language::Pl7Il, text)
 }
 
 /// Parses one unit of ladder. Total and linear for every text.
 pub fn parse_ld(text: &str) -> Parse {
-    grammar::parse(text, Dialect::Ld, Code::Pl7)
+    super::parse(Language::Pl7Ld, text)
 }
 
 /// Parses one unit of structured text. Total and linear for every text.
 pub fn parse_st(text: &str) -> Parse {
-    grammar::parse(text, Dialect::St, Code::Pl7)
+    super::parse(Language::Pl7St, text)
 }
 
 /// Whether a word means something in the language, in any case: a keyword, an instruction, a function, a subroutine.
@@ -67,15 +67,15 @@ pub(super) fn operation_codes() -> impl Iterator<Item = &'static str> {
 
 /// Parses one page of a chart, or a chart in the textual form of IEC 61131-3. Total and linear for every text.
 pub fn parse_chart(text: &str) -> Parse {
-    grammar::parse_chart(text, Code::Pl7)
+    super::parse(Language::Pl7Gr7, text)
 }
 
 /// Parses one unit of PL7-2 ladder. Total and linear for every text.
 pub fn parse_pl7_2_ld(text: &str) -> Parse {
-    grammar::parse(text, Dialect::Ld, Code::Pl72)
+    super::parse(Language::Pl72Ld, text)
 }
 
 /// As [`parse_chart`], with the operands and operations of PL7-2.
 pub fn parse_pl7_2_chart(text: &str) -> Parse {
-    grammar::parse_chart(text, Code::Pl72)
+    super::parse(Language::Pl72Gr7, text)
 }

@@ -11,14 +11,10 @@ macro_rules! words {
             pub(super) const WORDS: &[&str] = &[$($text),*];
 
             $vis fn of(text: &str) -> Option<Self> {
-                #[expect(non_upper_case_globals, reason = "the names of the variants")]
-                mod packed {
-                    $(pub(super) const $word: u128 = crate::syntax::packed::pack($text.as_bytes());)*
-                }
-                match crate::syntax::packed::pack(text.as_bytes()) {
-                    $(packed::$word => Some(Self::$word),)*
-                    _ => None,
-                }
+                const ALL: &[$name] = &[$($name::$word),*];
+                static INDEX: crate::syntax::packed::Index<{ ALL.len() }> =
+                    crate::syntax::packed::Index::new([$($text),*]);
+                INDEX.find(text).and_then(|it| ALL.get(it).copied())
             }
         }
     };

@@ -24,7 +24,7 @@ pub mod symbols;
 #[cfg(test)]
 mod tests;
 
-use super::{Mnemonics, Parse, Parser, SyntaxKind};
+use super::{Language, Memo, Mnemonics, Parse, Parser, SyntaxKind};
 
 pub(crate) use lexer::is_constant;
 
@@ -46,8 +46,12 @@ pub fn vote(text: &str) -> Mnemonics {
 
 /// Parses one unit: a block, a listing, or several of them.
 pub fn parse(text: &str, mnemonics: Mnemonics) -> Parse {
+    super::parse(Language::Step5(mnemonics), text)
+}
+
+pub(super) fn parse_with(text: &str, mnemonics: Mnemonics, memo: &mut Memo) -> Parse {
     let tokens = lexer::lex(text);
-    let mut parser = Parser::new(text, &tokens);
+    let mut parser = Parser::new(text, &tokens, memo);
     grammar::root(&mut parser, mnemonics);
     parser.finish()
 }

@@ -6,9 +6,9 @@
 
 use std::ops::Range;
 
-use crate::syntax::Parse;
 use crate::syntax::SyntaxKind::{Newline, Unknown, Whitespace};
 use crate::syntax::symbol_table::{Field, Rows};
+use crate::syntax::{Language, Memo, Parse};
 
 /// Fields of a line, by their places in it: the operand, the symbol, and the comment behind them, which may be empty.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,6 +67,10 @@ fn is_operand(field: &str) -> bool {
 
 /// Parses a table. Total and linear for every text. A line that is no row is kept, and is no error.
 pub fn parse(text: &str) -> Parse {
+    crate::syntax::parse(Language::Step5Symbols, text)
+}
+
+pub(in crate::syntax) fn parse_with(text: &str, memo: &mut Memo) -> Parse {
     let mut rows = Rows::default();
     for whole in text.split_inclusive(['\n', '\r']) {
         let (line, end) = whole.split_at(whole.trim_end_matches(['\n', '\r']).len());
@@ -89,7 +93,7 @@ pub fn parse(text: &str) -> Parse {
         }
         rows.push(Newline, end.len());
     }
-    rows.parse(text)
+    rows.parse(text, memo)
 }
 
 #[cfg(test)]

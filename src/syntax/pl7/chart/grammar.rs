@@ -8,7 +8,7 @@ use SyntaxKind::{
 
 use super::ast::{ActionKind, CodeLanguage, StepKind};
 use super::word::Word;
-use crate::syntax::pl7::grammar::{Dialect, Grammar};
+use crate::syntax::pl7::grammar::{Dialect, Grammar, Part};
 use crate::syntax::pl7::instructions::IlOp;
 use crate::syntax::pl7::word::Keyword;
 use crate::syntax::{Parser, SyntaxKind};
@@ -50,7 +50,7 @@ pub(in crate::syntax::pl7) fn stops(parser: &Parser<'_>) -> Vec<bool> {
             _ => false,
         }
     };
-    (0..words.len()).map(stops).collect()
+    words.iter().enumerate().map(|(n, it)| it.is_some() && stops(n)).collect()
 }
 
 impl<'t> Grammar<'_, 't> {
@@ -140,7 +140,15 @@ impl<'t> Grammar<'_, 't> {
 
     /// One element of a page or a textual chart. Consumes at least one token.
     fn element(&mut self) {
-        match self.word() {
+        let known = self.p.piece().filter(|it| self.nth_stops(it.len));
+        let known = known.map(|it| (self.context(Part::Element, &it), it));
+        if let Some((context, piece)) = &known
+            && self.p.recall(piece, *context)
+        {
+            return;
+        }
+        let word = self.word();
+        match word {
             Some(Word::Step(kind)) => self.step(kind),
             Some(Word::Action) => self.chart_action(),
             Some(Word::Transition) => self.transition(),
@@ -152,6 +160,9 @@ impl<'t> Grammar<'_, 't> {
                 self.bump_error();
             }
             _ => self.unknown(),
+        }
+        if let (Some(Word::Step(_) | Word::Link(_) | Word::Connector(_)), Some((context, piece))) = (word, known) {
+            self.p.remember(&piece, context, true);
         }
     }
 
