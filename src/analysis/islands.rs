@@ -17,7 +17,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Site;
 use super::facts::{self, FactObject, UnitFacts, Use};
-use super::program::{Access, Modes, ObjectUses, ProgramIndex, Skeleton, Summary, actual_mode};
+use super::program::{Modes, ObjectUses, ProgramIndex, Skeleton, actual_mode};
+use super::unseen::{Access, Summary};
 use crate::model::object::{Area, Footprint, Object};
 use crate::model::unit::Mode;
 
@@ -255,8 +256,8 @@ impl Islands {
 
     /// What the program does with an object of a unit that others can use too.
     pub(super) fn modes(&self, unit: u32, object: u32) -> Modes {
-        let id = self.units.get(unit as usize).and_then(|it| it.ids.get(object as usize));
-        id.and_then(|it| self.objects.get(*it as usize)).map(|it| it.modes).unwrap_or_default()
+        let id = self.object((unit, object));
+        id.and_then(|it| self.objects.get(it as usize)).map(|it| it.modes).unwrap_or_default()
     }
 
     /// Adds all objects of the islands that some of them lie on.
@@ -296,6 +297,15 @@ impl Islands {
                 }
             }
         }
+    }
+
+    pub fn get(&self, id: u32) -> Option<&Object> {
+        self.objects.get(id as usize).map(|it| &it.fact.object)
+    }
+
+    /// The object of the program that an object of a unit is: both by their numbers.
+    pub fn object(&self, (unit, object): (u32, u32)) -> Option<u32> {
+        self.units.get(unit as usize)?.ids.get(object as usize).copied().filter(|it| *it != NONE)
     }
 
     /// The objects that are used at a place.
