@@ -193,8 +193,8 @@ pub struct ObjectUses<'a> {
 }
 
 impl<'a> ObjectUses<'a> {
-    pub(super) fn new(object: &'a Object) -> Self {
-        Self { object, number: false, uses: Vec::new(), modes: Modes::default(), asked: Cell::default() }
+    pub(super) fn with_capacity(object: &'a Object, uses: usize) -> Self {
+        Self { object, number: false, uses: Vec::with_capacity(uses), modes: Modes::default(), asked: Cell::default() }
     }
 
     pub(super) fn push(&mut self, skeleton: &Skeleton<'_>, unit: u32, it: &'a Use) {
@@ -1131,11 +1131,8 @@ fn collect<'a>(skeleton: &Skeleton<'a>, wanted: impl Fn(&Object) -> bool) -> Vec
         }
     }
     let object = |((fact, number), count): ((&&'a FactObject, bool), usize)| ObjectUses {
-        object: &fact.object,
         number,
-        uses: Vec::with_capacity(count),
-        modes: Modes::default(),
-        asked: Cell::default(),
+        ..ObjectUses::with_capacity(&fact.object, count)
     };
     let mut objects: Vec<ObjectUses<'a>> = firsts.iter().zip(numbers).zip(counts).map(object).collect();
     by_rank.retain(|it| !locals[*it as usize].is_empty());

@@ -5,7 +5,7 @@
 //! [`judge`] asks where the scan does something else than the five rules say (GRF:128-152).
 
 pub mod code;
-mod gate;
+pub(super) mod gate;
 pub mod judge;
 pub mod set_reset;
 pub mod tables;
