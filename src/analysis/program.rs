@@ -16,7 +16,7 @@ use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use super::fields;
 use super::islands::Islands;
 use super::sequences::Sequences;
-use super::unseen::{Access, Questions, Summary, Unseen};
+use super::unseen::{Access, AskedFor, Questions, Summary, Unseen};
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
@@ -479,7 +479,7 @@ impl<'a> ProgramIndex<'a> {
 
     /// What was asked for each of its objects, as one of its units names it: unit, and index there. And what was asked for
     /// no object that is judged, so that the answers may bear on all of them.
-    pub fn asked(&self) -> (Vec<((u32, u32), Questions)>, Questions) {
+    pub fn asked(&self) -> (AskedFor, Questions) {
         let asked = |it: &ObjectUses<'_>| {
             let first = it.uses.first()?;
             Some(((first.unit, first.it.object), it.asked.get())).filter(|it| !it.1.is_empty())

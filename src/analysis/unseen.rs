@@ -101,6 +101,9 @@ pub struct Questions {
     addressed: Modes,
 }
 
+/// What was asked for which objects. Each goes by the name of a unit: the unit, and the number of the object there.
+pub type AskedFor = Vec<((u32, u32), Questions)>;
+
 impl Questions {
     pub fn is_empty(self) -> bool {
         self == Self::default()

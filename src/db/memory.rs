@@ -13,7 +13,7 @@ use crate::analysis::facts::UnitFacts;
 use crate::analysis::islands::Islands;
 use crate::analysis::outline::{Moved, Outline};
 use crate::analysis::program::{ProgramIndex, Skeleton};
-use crate::analysis::unseen::{Questions, Summary};
+use crate::analysis::unseen::{AskedFor, Questions, Summary};
 use crate::lint::Finding;
 use crate::model::entity::Family;
 use crate::target::Target;
@@ -45,7 +45,7 @@ struct State {
 #[derive(Debug)]
 enum Kept {
     /// All there is to make the rest of: for which objects what was asked of the summary. They go by the name of a unit.
-    Asked(Vec<((u32, u32), Questions)>),
+    Asked(AskedFor),
     Known(Known),
 }
 
@@ -60,11 +60,7 @@ struct Known {
 
 impl Known {
     /// Of what was found out about a program as a whole.
-    fn new(
-        islands: Arc<Islands>,
-        ran: &Ran<Arc<Finding<Site>>>,
-        asked: impl IntoIterator<Item = ((u32, u32), Questions)>,
-    ) -> Self {
+    fn new(islands: Arc<Islands>, ran: &Ran<Arc<Finding<Site>>>, asked: AskedFor) -> Self {
         let subjects = ran.findings.iter().map(|it| islands.at(it.place)).collect();
         let asked = asked.into_iter().filter_map(|(of, it)| Some((islands.object(of)?, it))).collect();
         Self { islands, subjects, asked }
@@ -179,7 +175,7 @@ impl From {
     fn join(
         self,
         ran: Ran<Arc<Finding<Site>>>,
-        asked: Vec<((u32, u32), Questions)>,
+        asked: AskedFor,
         asked_of_all: Questions,
     ) -> (Ran<Arc<Finding<Site>>>, Questions, Kept) {
         let Known { islands, subjects, asked: mut known } = self.known;
