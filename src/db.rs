@@ -495,16 +495,17 @@ pub fn program_findings<'db>(db: &'db dyn Db, program: Program<'db>) -> Ran<Arc<
     let named = program.files(db).first().and_then(|&it| *named_controller(db, it));
     let target = settings.target_or(program.family(db), named);
     let facts = program_facts(db, program);
-    let skeleton = Rc::new(skeleton(db, program, &facts));
-    let whole = ProgramIndex::of(skeleton.clone());
+    let whole = index(db, program, &facts);
     let key = (program.key(db).clone(), program.family(db));
     let step = db.memory().step(key, target, &facts, &whole);
+    let part = step.part(&whole);
     let cx = ProgramCx::new(&whole, settings, &target);
-    let mut ran = run_program_rules(&cx, |it| matches!(it, Check::Program(_)));
-    let part = step.part(&skeleton);
     let part = part.as_ref().map(|it| ProgramCx::new(it, settings, &target));
-    let of_objects = run_program_rules(part.as_ref().unwrap_or(&cx), |it| matches!(it, Check::Object(_)));
-    let of_objects = db.memory().keep(step, of_objects, &whole);
+    let judged = part.as_ref().unwrap_or(&cx);
+    // Before the rules that look at the whole: what they ask for is not kept.
+    let of_objects = run_program_rules(judged, |it| matches!(it, Check::Object(_)));
+    let of_objects = db.memory().keep(step, of_objects, judged.program);
+    let mut ran = run_program_rules(&cx, |it| matches!(it, Check::Program(_)));
     ran.findings.extend(of_objects.findings);
     ran.failed.extend(of_objects.failed);
     ran

@@ -64,7 +64,7 @@ fn relied_on<'p, 'a>(
         let is_value = matches!(it.object.class, Class::Memory | Class::Output | Class::Symbol) && it.object.is_fixed();
         let mut writes = it.with_mode(Mode::writes);
         is_value
-            && !program.writes_indirectly(&it.object.footprint.area)
+            && !program.unseen(it).is_written()
             && writes.all(|it| is_of_chart(it.unit) && !instead.iter().any(|action| action.holds(it.site())))
     };
     let mine = |it: &&'p GlobalUse<'a>| of.contains(&it.it.object) && action.holds(it.site());

@@ -1,17 +1,15 @@
 //! G011: a bit that the action of a step leaves at 1, and that nothing resets.
 
 use crate::analysis::Site;
-use crate::analysis::drives::Hidden;
 use crate::analysis::processing::{InAction, is_stored, may_raise};
 use crate::analysis::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    let hidden = Hidden::new(cx.program);
     for uses in cx.known_bits() {
         let Some(raised) = Raised::new(cx.program, uses) else { continue };
-        if hidden.may_hold(uses.object.class, Mode::Reset) {
+        if cx.program.unseen(uses).may_give(Mode::Reset) {
             continue;
         }
         let (place, action) = &raised.first;

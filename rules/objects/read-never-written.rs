@@ -13,34 +13,34 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     }
     let configured = Configured::new(cx);
     // A place computed at run time, or a symbol that nothing resolves, may be the missing use.
-    if !program.has_unresolved(Mode::writes) {
-        let given = bytes_given(cx);
-        let mut unwritten = one_sided(cx, |it| it.is_read(), |it| it.is_written());
-        unwritten.retain(|&it| {
-            let uses = &program.objects[it as usize];
-            !program.writes_indirectly(&uses.object.footprint.area)
-                && !configured.writes(uses)
-                && !given.iter().any(|byte| covers(*byte, uses))
-        });
-        for group in unwritten.chunk_by(|&a, &b| same_byte(cx, a, b)) {
-            let others = if program.family.has_blocks() {
-                "no operator panel, other station or clock byte of the CPU"
-            } else {
-                "no operator panel or other station"
-            };
-            report(cx, group, "read", "written", sink).note(format!("this assumes that {others} writes it"));
-        }
+    let given = bytes_given(cx);
+    let mut unwritten = one_sided(cx, |it| it.is_read(), |it| it.is_written());
+    unwritten.retain(|&it| {
+        let (uses, unseen) = (&program.objects[it as usize], program.unseen(&program.objects[it as usize]));
+        !configured.writes(uses)
+            && !given.iter().any(|byte| covers(*byte, uses))
+            && !unseen.has_unresolved(Mode::writes)
+            && !unseen.is_written()
+    });
+    for group in unwritten.chunk_by(|&a, &b| same_byte(cx, a, b)) {
+        let others = if program.family.has_blocks() {
+            "no operator panel, other station or clock byte of the CPU"
+        } else {
+            "no operator panel or other station"
+        };
+        report(cx, group, "read", "written", sink).note(format!("this assumes that {others} writes it"));
     }
-    if !program.has_unresolved(Mode::reads) {
-        // An output that nobody wants has to go somewhere: what only takes such outputs is a waste basket.
-        let is_given = |it: &ObjectUses<'_>| it.with_mode(|it| it.writes() && it != Mode::Output).next().is_some();
-        let mut unread = one_sided(cx, is_given, |it| it.is_read() || configured.reads(it));
-        unread.retain(|&it| !program.reads_indirectly(&program.objects[it as usize].object.footprint.area));
-        for group in unread.chunk_by(|&a, &b| same_byte(cx, a, b)) {
-            report(cx, group, "written", "read", sink)
-                .severity(Severity::Advice)
-                .note("this assumes that no operator panel or other station reads it");
-        }
+    // An output that nobody wants has to go somewhere: what only takes such outputs is a waste basket.
+    let is_given = |it: &ObjectUses<'_>| it.with_mode(|it| it.writes() && it != Mode::Output).next().is_some();
+    let mut unread = one_sided(cx, is_given, |it| it.is_read() || configured.reads(it));
+    unread.retain(|&it| {
+        let unseen = program.unseen(&program.objects[it as usize]);
+        !unseen.has_unresolved(Mode::reads) && !unseen.is_read()
+    });
+    for group in unread.chunk_by(|&a, &b| same_byte(cx, a, b)) {
+        report(cx, group, "written", "read", sink)
+            .severity(Severity::Advice)
+            .note("this assumes that no operator panel or other station reads it");
     }
 }
 

@@ -8,14 +8,15 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    if !program.complete || program.has_unresolved(Mode::writes) {
+    if !program.complete {
         return;
     }
     for section in program.conditional_sections() {
         let condition = section.condition;
         // The system drives the other bits.
         let is_driven = matches!(condition.class, Class::Memory | Class::Output) && condition.is_fixed();
-        if !is_driven || program.writes_indirectly(&condition.footprint.area) {
+        let unseen = program.unseen_of(condition);
+        if !is_driven || unseen.has_unresolved(Mode::writes) || unseen.is_written() {
             continue;
         }
         let Some(&first) = section.units.first() else { continue };

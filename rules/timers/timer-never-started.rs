@@ -21,8 +21,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     };
     for items in program.objects.chunk_by(same) {
         let Some(kind) = kind(items[0].object) else { continue };
-        let area = &items[0].object.footprint.area;
-        let (writes, reads) = (!program.writes_indirectly(area), !program.reads_indirectly(area));
+        let unseen = program.unseen(&items[0]);
         let mut uses: Vec<GlobalUse<'_>> = items.iter().flat_map(|it| it.uses.iter().copied()).collect();
         drives::in_order(program, &mut uses);
         // What a call or a store does to it is not known.
@@ -40,13 +39,13 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let name = items[0].object.text.split(['.', ',']).next().unwrap_or_default();
         match (drive, read) {
             _ if is_open => {}
-            (None, Some(read)) if writes => {
+            (None, Some(read)) if !unseen.is_written() => {
                 let resets = uses.iter().filter(|it| matches!(it.mode, Mode::Drive(_)));
                 sink.report(read.site(), format!("`{name}` is read, and nothing {kind}"))
                     .related_all(resets.map(|it| (it.site(), "only this is done with it".to_owned())));
             }
             // The outputs of a drum are set when the application is configured, and a text block sends.
-            (Some(drive), None) if reads && !matches!(area, Area::Block("DR" | "D" | "TXT", _)) => {
+            (Some(drive), None) if !matches!(area, Area::Block("DR" | "D" | "TXT", _)) && !unseen.is_read() => {
                 sink.report(drive.site(), format!("`{name}` is driven, and nothing reads it"))
                     .severity(Severity::Advice)
                     .note("this assumes that no operator panel or other station reads it");

@@ -17,7 +17,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         if is_output
             && let Some((condition, write)) = lone_assignment(cx, uses)
             && !otherwise()
-            && !cx.program.is_written_by_index(&uses.object.footprint.area)
+            && !cx.program.unseen(uses).is_written_by_index()
         {
             found.push((write.unit, condition, uses, write));
         }

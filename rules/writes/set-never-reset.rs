@@ -1,7 +1,6 @@
 //! W003: a bit that is set and never reset, or reset and never set.
 
 use crate::analysis::Site;
-use crate::analysis::drives::Hidden;
 use crate::analysis::processing::InAction;
 use crate::analysis::program::GlobalUse;
 use crate::lint::{ProgramCx, Severity, Sink};
@@ -9,7 +8,6 @@ use crate::model::object::Class;
 use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    let hidden = Hidden::new(cx.program);
     for uses in cx.known_bits() {
         let class = uses.object.class;
         if uses.uses.iter().any(|it| gives_otherwise(it.mode)) {
@@ -19,7 +17,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let resets: Vec<&GlobalUse<'_>> = uses.with_mode(|it| it == Mode::Reset).collect();
         let Some((missing, places)) = one_sided(&sets, &resets) else { continue };
         // A table that is not cleared is Q007's affair.
-        if missing == Mode::Reset && cx.program.is_in_uncleared_table(&uses.object.footprint) {
+        if missing == Mode::Reset && cx.program.unseen(uses).is_in_uncleared_table() {
             continue;
         }
         // What a step stores is G011's affair.
@@ -30,7 +28,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             && sets.iter().any(|it| {
                 it.it.own || cx.program.is_startup(it.unit) || !it.it.conditional && !cx.program.is_in_event(it.unit)
             });
-        if constant_one || hidden.may_hold(class, missing) {
+        if constant_one || cx.program.unseen(uses).may_give(missing) {
             continue;
         }
         let Some((first, others)) = places.split_first() else { continue };

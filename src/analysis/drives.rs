@@ -109,28 +109,3 @@ pub fn conflict<'a>(
     let others = uses.iter().enumerate().filter(|it| it.0 != at).map(|it| *it.1).collect();
     Some((uses[at], others))
 }
-
-/// Writes that may be the missing ones under another name: of a symbol that nothing resolves for an address, and of any
-/// address for such a symbol.
-pub struct Hidden {
-    by_symbol: [bool; 2],
-    by_address: [bool; 2],
-}
-
-impl Hidden {
-    pub fn new(program: &ProgramIndex<'_>) -> Self {
-        let gives = |missing: Mode| {
-            move |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset))
-        };
-        Self {
-            by_symbol: [Mode::Set, Mode::Reset].map(|it| program.has_unresolved(gives(it))),
-            by_address: [Mode::Set, Mode::Reset].map(|it| program.has_addressed(gives(it))),
-        }
-    }
-
-    /// Whether a bit of the class may be written so: set or reset, as what is `missing`, or assigned.
-    pub fn may_hold(&self, class: Class, missing: Mode) -> bool {
-        let [set, reset] = if class == Class::Symbol { self.by_address } else { self.by_symbol };
-        if missing == Mode::Set { set } else { reset }
-    }
-}

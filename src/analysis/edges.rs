@@ -23,7 +23,6 @@ fn lone_writes<'u, 'a>(
         || !bit.has_mode(Mode::is_edge)
         || bit.has_mode(|it| it.writes() && !it.assigns())
         || neighbour_is_written()
-        || program.is_written_by_index(&bit.object.footprint.area)
     {
         return None;
     }
@@ -31,7 +30,8 @@ fn lone_writes<'u, 'a>(
     drives::in_order(program, &mut writes);
     let first = writes.first()?;
     let is_lone = writes.iter().all(|it| it.unit == first.unit) && program.reached[first.unit as usize];
-    (is_lone && drives::conflict(program, &writes, |_, _| true).is_none()).then_some(writes)
+    let is_lone = is_lone && drives::conflict(program, &writes, |_, _| true).is_none();
+    (is_lone && !program.unseen(bit).is_written_by_index()).then_some(writes)
 }
 
 /// An edge test that sees the same edge again, since the write of the bit can be passed by while the test is not; with

@@ -6,8 +6,9 @@
 //! **Invariant:** a rule that looks at objects one by one says of an island what follows from its uses, from the units that
 //! hold them and the calls which lead there, from the order in which these run and in which contexts, and from the program's
 //! [`Summary`]; it says it at one of those uses. What it says of objects that a unit has for itself, it says of
-//! [`ProgramIndex::judged_units`], at a place that no other object is used at. So an edit that leaves the summary as it is moves only the
-//! islands of the units that it touches ([`Outline::moved`](super::outline::Outline::moved)).
+//! [`ProgramIndex::judged_units`], at a place that no other object is used at. So an edit moves the islands of the units that it
+//! touches ([`Outline::moved`](super::outline::Outline::moved)), and those to which the summary would now
+//! [tell otherwise](Summary::tells_otherwise).
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -17,8 +18,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Site;
 use super::facts::{self, FactObject, UnitFacts, Use};
-use super::program::{Access, Modes, ObjectUses, ProgramIndex, Skeleton, Summary, actual_mode};
-use crate::model::object::{Area, Footprint, Object};
+use super::program::{Modes, ObjectUses, ProgramIndex, Skeleton, actual_mode};
+use super::sequences::gate::{Assigned, Told};
+use super::unseen::{Access, Summary};
+use crate::model::object::{Area, Class, Footprint, Object, Type};
 use crate::model::unit::Mode;
 
 /// No object of the program.
@@ -30,8 +33,15 @@ struct Known {
     /// As the unit wrote it that was the first to name it.
     fact: FactObject,
     area: u32,
-    /// Units that use it, with the number of the object there.
-    units: Vec<(u32, u32)>,
+    users: Vec<User>,
+}
+
+/// A unit that uses an object.
+#[derive(Debug, Clone, Copy)]
+struct User {
+    unit: u32,
+    /// Number of the object there.
+    at: u32,
     modes: Modes,
 }
 
@@ -49,23 +59,34 @@ struct Held {
     together: Vec<(u32, u32)>,
     /// Of the uses of objects that are [`Access::is_addressed`].
     addressed: Modes,
+    told: Option<Told>,
 }
 
 impl Held {
-    fn uses_of(&self, object: u32) -> impl Iterator<Item = &Use> {
+    /// The uses of an object, as indices into those of the unit, in order.
+    fn indices_of(&self, object: u32) -> &[u32] {
         let at = object as usize;
         let start = at.checked_sub(1).and_then(|it| self.ends.get(it)).copied().unwrap_or_default();
         let end = self.ends.get(at).copied().unwrap_or_default();
-        let uses = self.uses.get(start as usize..end as usize).unwrap_or_default();
-        uses.iter().filter_map(|it| self.facts.uses.get(*it as usize))
+        self.uses.get(start as usize..end as usize).unwrap_or_default()
+    }
+
+    fn modes_of(&self, skeleton: &Skeleton<'_>, unit: u32, object: u32) -> Modes {
+        let mut modes = Modes::default();
+        let uses = self.indices_of(object).iter().filter_map(|it| self.facts.uses.get(*it as usize));
+        uses.for_each(|it| modes.insert(actual_mode(skeleton, unit, it)));
+        modes
     }
 
     /// Finds what is told together, and how memory is used, which hang on where calls lead.
     fn tie(&mut self, skeleton: &Skeleton<'_>, unit: u32) {
         let (facts, ids) = (&self.facts, &self.ids);
         let id = |it: &Use| ids.get(it.object as usize).copied().unwrap_or(NONE);
-        // What one condition, jump or call passes by has one cause, and is told in one finding.
-        let missed = facts.objects.iter().zip(ids).filter_map(|(it, &id)| Some(((1, it.missed?), id)));
+        // What one condition, jump or call passes by has one cause, and is told in one finding: outputs that are not
+        // assigned, and edges that are not seen.
+        let is_output = |it: &FactObject| it.object.class == Class::Output && it.object.ty == Type::Bool;
+        let outputs = facts.objects.iter().zip(ids).filter(|it| is_output(it.0));
+        let missed = outputs.filter_map(|(it, &id)| Some(((1, it.missed?), id)));
         let is_passed_by = skeleton.is_passed_by(unit);
         let is_edge = |it: &&Use| it.mode.is_edge() || it.mode == Mode::EdgeMemory;
         let is_skipped = |it: &&Use| it.skipped_by.is_some() || is_passed_by;
@@ -87,7 +108,7 @@ impl Held {
 
     /// The objects of the program that are used, each once for each object of the unit that it is.
     fn used(&self) -> impl Iterator<Item = (u32, u32)> {
-        let is_used = |at: u32| self.uses_of(at).next().is_some();
+        let is_used = |at: u32| !self.indices_of(at).is_empty();
         (0..).zip(&self.ids).filter(move |&(at, &id)| id != NONE && is_used(at)).map(|(at, &id)| (at, id))
     }
 }
@@ -97,7 +118,12 @@ impl Held {
 pub struct Islands {
     ids: HashTable<u32>,
     objects: Vec<Known>,
+    /// Of the uses of each object.
+    modes: Vec<Modes>,
+    /// Objects that are [`Access::is_odd`].
+    odd: Vec<u32>,
     units: Vec<Held>,
+    assigned: Assigned,
     areas: FxHashMap<Area, u32>,
     /// Objects that lie in each byte of each area.
     bytes: FxHashMap<(u32, u32), Vec<u32>>,
@@ -132,10 +158,10 @@ impl Islands {
         for (unit, facts) in (0..).zip(facts) {
             let held = islands.hold(skeleton, unit, facts);
             islands.units.push(held);
-            islands.enter(unit);
+            islands.enter(skeleton, unit);
         }
         for id in 0..index(islands.objects.len()) {
-            islands.set_modes(skeleton, id);
+            islands.set_modes(id);
         }
         islands
     }
@@ -156,18 +182,26 @@ impl Islands {
             let Some(old) = self.units.get_mut(unit as usize).map(|it| std::mem::replace(it, held)) else { continue };
             for (_, id) in old.used() {
                 objects.insert(id);
-                self.objects[id as usize].units.retain(|it| it.0 != unit);
+                self.objects[id as usize].users.retain(|it| it.unit != unit);
             }
-            self.enter(unit);
+            if let Some(told) = &old.told {
+                self.assigned.remove(unit, told);
+            }
+            self.enter(skeleton, unit);
         }
         for &unit in moved {
             let Some(held) = self.units.get_mut(unit as usize) else { continue };
-            held.tie(skeleton, unit);
+            if !changed.contains(&unit) {
+                held.tie(skeleton, unit);
+                for (at, id) in held.used() {
+                    let users = self.objects[id as usize].users.iter_mut();
+                    let modes = held.modes_of(skeleton, unit, at);
+                    users.filter(|it| (it.unit, it.at) == (unit, at)).for_each(|it| it.modes = modes);
+                }
+            }
             objects.extend(held.used().map(|it| it.1));
         }
-        for &id in &objects {
-            self.set_modes(skeleton, id);
-        }
+        objects.iter().for_each(|&it| self.set_modes(it));
         objects
     }
 
@@ -191,8 +225,9 @@ impl Islands {
                 *end += 1;
             }
         }
-        let mut held =
-            Held { facts: facts.clone(), ids, ends, uses, together: Vec::new(), addressed: Modes::default() };
+        let told = Told::new(unit, facts, |it, _| ids.get(it as usize).copied().unwrap_or(NONE).into());
+        let (together, addressed) = (Vec::new(), Modes::default());
+        let mut held = Held { facts: facts.clone(), ids, ends, uses, together, addressed, told };
         held.tie(skeleton, unit);
         held
     }
@@ -219,44 +254,57 @@ impl Islands {
         } else {
             self.large.entry(area).or_default().push(id);
         }
-        self.objects.push(Known { fact: fact.clone(), area, units: Vec::new(), modes: Modes::default() });
+        if Access::is_odd(&fact.object) {
+            self.odd.push(id);
+        }
+        self.modes.push(Modes::default());
+        self.objects.push(Known { fact: fact.clone(), area, users: Vec::new() });
         id
     }
 
-    fn enter(&mut self, unit: u32) {
+    fn enter(&mut self, skeleton: &Skeleton<'_>, unit: u32) {
         let Some(held) = self.units.get(unit as usize) else { return };
         for (at, id) in held.used() {
-            self.objects[id as usize].units.push((unit, at));
+            let modes = held.modes_of(skeleton, unit, at);
+            self.objects[id as usize].users.push(User { unit, at, modes });
+        }
+        if let Some(told) = &held.told {
+            self.assigned.insert(unit, told);
         }
     }
 
-    fn set_modes(&mut self, skeleton: &Skeleton<'_>, id: u32) {
+    fn set_modes(&mut self, id: u32) {
         let mut modes = Modes::default();
-        for &(unit, at) in &self.objects[id as usize].units {
-            for it in self.units[unit as usize].uses_of(at) {
-                modes.insert(actual_mode(skeleton, unit, it));
-            }
-        }
-        self.objects[id as usize].modes = modes;
+        self.objects[id as usize].users.iter().for_each(|it| modes.join(it.modes));
+        self.modes[id as usize] = modes;
     }
 
     /// The objects that are used, in no order.
     pub fn used(&self) -> impl Iterator<Item = &Object> {
-        self.objects.iter().filter(|it| !it.units.is_empty()).map(|it| &it.fact.object)
+        self.objects.iter().filter(|it| !it.users.is_empty()).map(|it| &it.fact.object)
     }
 
     /// Of the program whose facts were taken last.
     pub(super) fn access(&self, skeleton: &Skeleton<'_>) -> Access {
-        let used = self.objects.iter().filter(|it| !it.units.is_empty());
+        let odd = self.odd.iter().map(|&it| (&self.objects[it as usize], self.modes[it as usize]));
+        let used = odd.filter(|it| !it.0.users.is_empty());
         let mut addressed = Modes::default();
         self.units.iter().for_each(|it| addressed.join(it.addressed));
-        Access::new(skeleton, used.map(|it| (&it.fact.object, it.modes)), addressed)
+        Access::new(skeleton, used.map(|(it, modes)| (&it.fact.object, modes)), addressed)
     }
 
-    /// What the program does with an object of a unit that others can use too.
-    pub(super) fn modes(&self, unit: u32, object: u32) -> Modes {
-        let id = self.units.get(unit as usize).and_then(|it| it.ids.get(object as usize));
-        id.and_then(|it| self.objects.get(*it as usize)).map(|it| it.modes).unwrap_or_default()
+    /// Whether the program both sets and resets an object.
+    pub(super) fn is_set_and_reset(&self, id: u32) -> bool {
+        self.modes.get(id as usize).is_some_and(|it| it.set_and_reset())
+    }
+
+    /// What each unit tells of sequences.
+    pub(super) fn told(&self) -> impl Iterator<Item = Option<&Told>> {
+        self.units.iter().map(|it| it.told.as_ref())
+    }
+
+    pub(super) fn assigned(&self) -> &Assigned {
+        &self.assigned
     }
 
     /// Adds all objects of the islands that some of them lie on.
@@ -281,8 +329,8 @@ impl Islands {
             } else {
                 (0..).zip(&self.objects).filter(|other| other.1.area == it.area).for_each(|it| visit(it.0));
             }
-            for &(unit, _) in &it.units {
-                for &(a, b) in &self.units[unit as usize].together {
+            for user in &it.users {
+                for &(a, b) in &self.units[user.unit as usize].together {
                     let other = if a == id {
                         b
                     } else if b == id {
@@ -296,6 +344,15 @@ impl Islands {
                 }
             }
         }
+    }
+
+    pub fn get(&self, id: u32) -> Option<&Object> {
+        self.objects.get(id as usize).map(|it| &it.fact.object)
+    }
+
+    /// The object of the program that an object of a unit is: both by their numbers.
+    pub fn object(&self, (unit, object): (u32, u32)) -> Option<u32> {
+        self.units.get(unit as usize)?.ids.get(object as usize).copied().filter(|it| *it != NONE)
     }
 
     /// The objects that are used at a place.
@@ -320,36 +377,41 @@ impl Islands {
 
     /// The objects that are wanted, in their order.
     pub fn those<'a>(&self, skeleton: &Skeleton<'a>, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
-        let wanted = (0..).zip(&self.objects).filter(|it| !it.1.units.is_empty() && wanted(&it.1.fact.object));
+        let wanted = (0..).zip(&self.objects).filter(|it| !it.1.users.is_empty() && wanted(&it.1.fact.object));
         self.collect(skeleton, wanted.map(|it| it.0))
     }
 
     fn collect<'a>(&self, skeleton: &Skeleton<'a>, objects: impl Iterator<Item = u32>) -> Vec<ObjectUses<'a>> {
         let rank = |unit: u32| skeleton.order.get(unit as usize).copied().unwrap_or(NONE);
         let mut found = Vec::with_capacity(objects.size_hint().0);
+        let (mut users, mut all): (Vec<(u32, u32, u32)>, Vec<u32>) = (Vec::new(), Vec::new());
         for id in objects {
-            let mut units = self.objects[id as usize].units.clone();
-            units.sort_unstable_by_key(|&(unit, at)| (rank(unit), at));
-            let fact = |&(unit, at): &(u32, u32)| skeleton.units.get(unit as usize)?.objects.get(at as usize);
-            let Some(first) = units.first().and_then(fact) else { continue };
-            let mut uses = ObjectUses::new(&first.object);
-            uses.number = units.iter().filter_map(fact).any(|it| it.number);
-            for (unit, of_unit) in units.chunk_by(|a, b| a.0 == b.0).map(|it| (it[0].0, it)) {
+            users.clear();
+            users.extend(self.objects[id as usize].users.iter().map(|it| (rank(it.unit), it.at, it.unit)));
+            users.sort_unstable();
+            let fact = |&(_, at, unit): &(u32, u32, u32)| skeleton.units.get(unit as usize)?.objects.get(at as usize);
+            let Some((first, &(rank, at, _))) = users.first().and_then(|it| Some((fact(it)?, it))) else { continue };
+            let count = users.iter().map(|&(_, at, unit)| self.units[unit as usize].indices_of(at).len()).sum();
+            let mut uses = ObjectUses::with_capacity(&first.object, count);
+            uses.number = users.iter().filter_map(fact).any(|it| it.number);
+            for of_unit in users.chunk_by(|a, b| a.2 == b.2) {
+                let unit = of_unit[0].2;
                 let held = &self.units[unit as usize];
-                let mut all: Vec<u32> = Vec::new();
-                for &(_, at) in of_unit {
-                    let start = at.checked_sub(1).map_or(0, |it| held.ends[it as usize]);
-                    all.extend(&held.uses[start as usize..held.ends[at as usize] as usize]);
-                }
-                if of_unit.len() > 1 {
-                    all.sort_unstable();
-                }
                 let facts: &'a UnitFacts = skeleton.units[unit as usize];
-                all.into_iter()
-                    .filter_map(|it| facts.uses.get(it as usize))
-                    .for_each(|it| uses.push(skeleton, unit, it));
+                let indices = match of_unit {
+                    [(_, at, _)] => held.indices_of(*at),
+                    _ => {
+                        all.clear();
+                        of_unit.iter().for_each(|it| all.extend(held.indices_of(it.1)));
+                        all.sort_unstable();
+                        &all
+                    }
+                };
+                for it in indices.iter().filter_map(|it| facts.uses.get(*it as usize)) {
+                    uses.push(skeleton, unit, it);
+                }
             }
-            found.push((rank(units[0].0), units[0].1, uses));
+            found.push((rank, at, uses));
         }
         found.sort_unstable_by(|a, b| {
             let key = |it: &'_ Object| (it.footprint.start, u32::MAX - it.footprint.bits);

@@ -41,6 +41,7 @@ pub mod stretches;
 pub mod stuck;
 pub mod symbols;
 pub mod turns;
+pub mod unseen;
 pub mod used;
 
 /// A place of a program without its position: the `anchor`-th place that the unit's facts name.

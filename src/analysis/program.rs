@@ -1,6 +1,6 @@
 //! A program as a whole: the access table over all units, the call graph, and what scans what.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::ops::Deref;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
@@ -16,6 +16,7 @@ use super::facts::{self, FactCall, FactObject, UnitFacts, Use};
 use super::fields;
 use super::islands::Islands;
 use super::sequences::Sequences;
+use super::unseen::{Access, AskedFor, Questions, Summary, Unseen};
 use crate::model::chart::StepKind;
 use crate::model::dfb::{Interface, Role};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family, Part, Task};
@@ -148,7 +149,7 @@ impl Modes {
     }
 
     /// Whether one of them drives a pin.
-    fn drive(self) -> bool {
+    pub(super) fn drive(self) -> bool {
         self.0 & Self::bit(Mode::Drive(Pin::Whole)) != 0
     }
 
@@ -157,9 +158,25 @@ impl Modes {
         self.iter().any(|it| matches!(it, Mode::Drive(_)) || wanted(it))
     }
 
+    /// Those that are wanted, those of pins left out.
+    pub(super) fn of(wanted: impl Fn(Mode) -> bool) -> Self {
+        let mut found = Self::default();
+        Self::ALL.into_iter().filter(|it| !matches!(it, Mode::Drive(_)) && wanted(*it)).for_each(|it| found.insert(it));
+        found
+    }
+
     /// Whether one of the modes is wanted, those of pins left out.
-    fn has(self, wanted: impl Fn(Mode) -> bool) -> bool {
-        self.iter().any(|it| !matches!(it, Mode::Drive(_)) && wanted(it))
+    pub(super) fn has(self, wanted: impl Fn(Mode) -> bool) -> bool {
+        self.meet(Self::of(wanted))
+    }
+
+    pub(super) fn meet(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// Those that only one of both has.
+    pub(super) fn difference(self, other: Self) -> Self {
+        Self(self.0 ^ other.0)
     }
 }
 
@@ -171,11 +188,13 @@ pub struct ObjectUses<'a> {
     pub number: bool,
     pub uses: Vec<GlobalUse<'a>>,
     modes: Modes,
+    /// What was asked to judge it.
+    asked: Cell<Questions>,
 }
 
 impl<'a> ObjectUses<'a> {
-    pub(super) fn new(object: &'a Object) -> Self {
-        Self { object, number: false, uses: Vec::new(), modes: Modes::default() }
+    pub(super) fn with_capacity(object: &'a Object, uses: usize) -> Self {
+        Self { object, number: false, uses: Vec::with_capacity(uses), modes: Modes::default(), asked: Cell::default() }
     }
 
     pub(super) fn push(&mut self, skeleton: &Skeleton<'_>, unit: u32, it: &'a Use) {
@@ -209,85 +228,6 @@ impl<'a> ObjectUses<'a> {
             && self.is_read()
             && !self.has_mode(|it| it.is_edge() || it == Mode::EdgeMemory)
             && self.with_mode(Mode::reads).all(|it| !it.it.exposed)
-    }
-}
-
-/// Places computed at run time.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-struct Indirect {
-    /// By a pointer, or an index on a symbol that nothing resolves.
-    anywhere: bool,
-    /// By an index on an address, which does not lead out of its area: where it would, the controller takes 0 for it
-    /// (PL7:1134-1143).
-    areas: FxHashSet<Area>,
-}
-
-impl Indirect {
-    fn insert(&mut self, object: &Object) {
-        let area = &object.footprint.area;
-        self.anywhere |= matches!(area, Area::Indirect | Area::Symbol(_));
-        if object.indexed && !self.areas.contains(area) {
-            self.areas.insert(area.clone());
-        }
-    }
-
-    fn may_be_in(&self, area: &Area) -> bool {
-        // What is meant by a symbol that nothing resolves may lie anywhere.
-        self.anywhere || self.areas.contains(area) || matches!(area, Area::Symbol(_)) && !self.areas.is_empty()
-    }
-}
-
-/// What can be said of all objects together, which those that judge a single one want to know.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Summary {
-    access: Access,
-    /// Tables of steps that the program does not clear, of which rule Q007 tells.
-    uncleared: Vec<Footprint>,
-}
-
-/// How places are used that code does not name, or not by their address.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Access {
-    written: Indirect,
-    read: Indirect,
-    /// Of the uses by a symbol that nothing resolves and that drives no block.
-    unresolved: Modes,
-    /// Of the uses of outputs, memory and data by address.
-    addressed: Modes,
-}
-
-impl Access {
-    /// `objects`: at least those that are [`Self::is_odd`], with the modes of their uses. `addressed`: of the uses of those
-    /// that are [`Self::is_addressed`].
-    pub(super) fn new<'o>(
-        skeleton: &Skeleton<'_>,
-        objects: impl Iterator<Item = (&'o Object, Modes)>,
-        addressed: Modes,
-    ) -> Self {
-        let mut found = Self { addressed, ..Self::default() };
-        found.written.anywhere = skeleton.units.iter().any(|it| it.writes_indirectly);
-        found.read.anywhere = skeleton.units.iter().any(|it| it.reads_indirectly);
-        for (object, modes) in objects.filter(|it| Self::is_odd(it.0)) {
-            if !object.is_fixed() && (modes.drive() || modes.has(Mode::writes)) {
-                found.written.insert(object);
-            }
-            if !object.is_fixed() && modes.has(Mode::reads) {
-                found.read.insert(object);
-            }
-            if matches!(object.footprint.area, Area::Symbol(_)) && !modes.drive() && !skeleton.is_item(object) {
-                found.unresolved.join(modes);
-            }
-        }
-        found
-    }
-
-    /// Whether the place of an object is not known.
-    pub(super) fn is_odd(object: &Object) -> bool {
-        !object.is_fixed() || matches!(object.footprint.area, Area::Symbol(_))
-    }
-
-    pub(super) fn is_addressed(object: &Object) -> bool {
-        matches!(object.class, Class::Output | Class::Memory | Class::Data)
     }
 }
 
@@ -390,6 +330,8 @@ pub struct ProgramIndex<'a> {
     islands: OnceCell<Arc<Islands>>,
     access: OnceCell<Access>,
     uncleared: OnceCell<Vec<Footprint>>,
+    /// What was asked for no object that is judged.
+    asked: Cell<Questions>,
     sequences: OnceCell<Sequences<'a>>,
     sequence_charts: OnceCell<Vec<Chart<'a>>>,
 }
@@ -413,7 +355,8 @@ impl<'a> ProgramIndex<'a> {
         let objects = Objects { of: skeleton.clone(), all: OnceCell::new() };
         let (sequences, sequence_charts) = (OnceCell::new(), OnceCell::new());
         let (islands, access, uncleared) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Self { skeleton, objects, changed: None, islands, access, uncleared, sequences, sequence_charts }
+        let asked = Cell::default();
+        Self { skeleton, objects, changed: None, islands, access, uncleared, asked, sequences, sequence_charts }
     }
 
     /// Takes what is kept of the program as it is.
@@ -481,7 +424,7 @@ impl<'a> ProgramIndex<'a> {
         Summary { access: self.access().clone(), uncleared: self.uncleared().to_vec() }
     }
 
-    fn access(&self) -> &Access {
+    pub(super) fn access(&self) -> &Access {
         self.access.get_or_init(|| {
             if let Some(islands) = self.known() {
                 return islands.access(self);
@@ -493,11 +436,15 @@ impl<'a> ProgramIndex<'a> {
         })
     }
 
-    fn uncleared(&self) -> &[Footprint] {
+    pub(super) fn uncleared(&self) -> &[Footprint] {
         self.uncleared.get_or_init(|| {
             // A rule that asks for sequences which cannot be had fails by itself.
             let faults = || self.sequences().faults.iter().filter_map(|it| it.table.clone()).collect();
-            catch_unwind(AssertUnwindSafe(faults)).unwrap_or_default()
+            let asked = self.asked.get();
+            let found = catch_unwind(AssertUnwindSafe(faults)).unwrap_or_default();
+            // The tables are a part of the summary themselves.
+            self.asked.set(asked);
+            found
         })
     }
 
@@ -520,36 +467,25 @@ impl<'a> ProgramIndex<'a> {
         self.objects.iter().position(is_same).map(as_index)
     }
 
-    /// Whether an indexed object, which may be any of its area, is written in an area.
-    pub fn is_written_by_index(&self, area: &Area) -> bool {
-        self.access().written.areas.contains(area)
+    /// What may be done to an object, which is judged, by places that do not name it.
+    pub fn unseen<'p>(&'p self, uses: &'p ObjectUses<'_>) -> Unseen<'p, 'a> {
+        Unseen { program: self, object: uses.object, asked: &uses.asked }
     }
 
-    /// Whether some unit writes a place computed at run time that may lie in the area: the absence of another write says
-    /// nothing then.
-    pub fn writes_indirectly(&self, area: &Area) -> bool {
-        self.access().written.may_be_in(area)
+    /// The same of an object of which nothing is said alone.
+    pub fn unseen_of<'p>(&'p self, object: &'p Object) -> Unseen<'p, 'a> {
+        Unseen { program: self, object, asked: &self.asked }
     }
 
-    /// Whether a bit lies in a table of steps that the program does not clear.
-    pub fn is_in_uncleared_table(&self, bit: &Footprint) -> bool {
-        self.uncleared().iter().any(|it| it.contains(bit))
-    }
-
-    /// Whether some unit reads a place computed at run time that may lie in the area.
-    pub fn reads_indirectly(&self, area: &Area) -> bool {
-        self.access().read.may_be_in(area)
-    }
-
-    /// Whether a use of that kind goes by a symbol that nothing resolves: it may be of any address. The items of an
-    /// instance of a DFB have none.
-    pub fn has_unresolved(&self, wanted: impl Fn(Mode) -> bool) -> bool {
-        self.access().unresolved.has(wanted)
-    }
-
-    /// Whether a use of that kind is one of an output, of memory or of data by its address.
-    pub fn has_addressed(&self, wanted: impl Fn(Mode) -> bool) -> bool {
-        self.access().addressed.has(wanted)
+    /// What was asked for each of its objects, as one of its units names it: unit, and index there. And what was asked for
+    /// no object that is judged, so that the answers may bear on all of them.
+    pub fn asked(&self) -> (AskedFor, Questions) {
+        let asked = |it: &ObjectUses<'_>| {
+            let first = it.uses.first()?;
+            Some(((first.unit, first.it.object), it.asked.get())).filter(|it| !it.1.is_empty())
+        };
+        let objects = self.objects.all.get().into_iter().flatten();
+        (objects.filter_map(asked).collect(), self.asked.get())
     }
 
     /// Pairs of distinct objects that share memory, by index, the earlier address first.
@@ -623,7 +559,7 @@ impl<'a> Skeleton<'a> {
     }
 
     /// Whether an object is an item of an instance of a DFB, which has no address.
-    fn is_item(&self, object: &Object) -> bool {
+    pub(super) fn is_item(&self, object: &Object) -> bool {
         let instance = object.text.split_once('.').map(|it| UnitName::Instance(key(it.0)));
         instance.is_some_and(|it| self.names.contains_key(&it))
     }
@@ -1195,10 +1131,8 @@ fn collect<'a>(skeleton: &Skeleton<'a>, wanted: impl Fn(&Object) -> bool) -> Vec
         }
     }
     let object = |((fact, number), count): ((&&'a FactObject, bool), usize)| ObjectUses {
-        object: &fact.object,
         number,
-        uses: Vec::with_capacity(count),
-        modes: Modes::default(),
+        ..ObjectUses::with_capacity(&fact.object, count)
     };
     let mut objects: Vec<ObjectUses<'a>> = firsts.iter().zip(numbers).zip(counts).map(object).collect();
     by_rank.retain(|it| !locals[*it as usize].is_empty());

@@ -3,7 +3,6 @@
 //! **Invariant:** with or without it, findings are the same. Whatever is written to the database but the text of a file
 //! makes it forget all.
 
-use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -13,7 +12,8 @@ use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::islands::Islands;
 use crate::analysis::outline::{Moved, Outline};
-use crate::analysis::program::{ProgramIndex, Skeleton, Summary};
+use crate::analysis::program::{ProgramIndex, Skeleton};
+use crate::analysis::unseen::{AskedFor, Questions, Summary};
 use crate::lint::Finding;
 use crate::model::entity::Family;
 use crate::target::Target;
@@ -36,23 +36,34 @@ struct State {
     outline: Outline,
     summary: Summary,
     ran: Ran<Arc<Finding<Site>>>,
-    kept: Option<Kept>,
+    /// What was asked of the summary for no single object.
+    asked_of_all: Questions,
+    kept: Kept,
 }
 
 /// What makes the next step from a state a small one.
 #[derive(Debug)]
-struct Kept {
+enum Kept {
+    /// All there is to make the rest of: for which objects what was asked of the summary. They go by the name of a unit.
+    Asked(AskedFor),
+    Known(Known),
+}
+
+#[derive(Debug)]
+struct Known {
     islands: Arc<Islands>,
     /// Of each finding, the objects at its place.
     subjects: Vec<Vec<u32>>,
+    /// What was asked of the summary for which objects.
+    asked: FxHashMap<u32, Questions>,
 }
 
-impl Kept {
-    /// What is known already of a program that was judged as a whole.
-    fn of(program: &ProgramIndex<'_>, ran: &Ran<Arc<Finding<Site>>>) -> Option<Self> {
-        let islands = program.known()?.clone();
+impl Known {
+    /// Of what was found out about a program as a whole.
+    fn new(islands: Arc<Islands>, ran: &Ran<Arc<Finding<Site>>>, asked: AskedFor) -> Self {
         let subjects = ran.findings.iter().map(|it| islands.at(it.place)).collect();
-        Some(Self { islands, subjects })
+        let asked = asked.into_iter().filter_map(|(of, it)| Some((islands.object(of)?, it))).collect();
+        Self { islands, subjects, asked }
     }
 }
 
@@ -66,12 +77,13 @@ pub(super) struct Step {
 }
 
 struct From {
-    state: State,
-    kept: Kept,
+    ran: Ran<Arc<Finding<Site>>>,
+    asked_of_all: Questions,
+    known: Known,
     /// Units whose own objects are to be judged anew.
     units: Vec<u32>,
-    /// Objects to judge anew.
-    moved: FxHashSet<u32>,
+    /// Objects to judge anew; `None` when those are all.
+    moved: Option<FxHashSet<u32>>,
 }
 
 impl Memory {
@@ -87,30 +99,28 @@ impl Memory {
         let of_target = (0..).zip(&states).filter(|it| is_kept && it.1.target == target);
         let outline = Outline::new(program);
         let moved = |it: &State| it.outline.moved(&it.facts, &outline, facts);
-        let mut near: Vec<(Moved, usize)> = of_target.filter_map(|(at, it)| Some((moved(it)?, at))).collect();
-        near.sort_by_key(|it| it.0.units.len());
-        let from = near.into_iter().find_map(|(by, at)| {
-            let (kept, moved) = states.get_mut(at)?.follow(facts, &by, program)?;
-            Some(From { state: states.remove(at), kept, units: by.units, moved })
-        });
+        let near = of_target.filter_map(|(at, it)| Some((moved(it)?, at))).min_by_key(|it| it.0.units.len());
+        let from = near.map(|(by, at)| states.remove(at).follow(facts, by, program));
         if !states.is_empty() {
             self.states.lock().unwrap_or_else(PoisonError::into_inner).insert(key.clone(), states);
         }
         Step { key, target, facts: facts.to_vec(), outline, from }
     }
 
-    /// Ends a step with what was found in its part, or in the whole program. Returns all findings.
+    /// Ends a step with what was found in its part, or in the whole program: `judged`. Returns all findings.
     pub(super) fn keep(
         &self,
         step: Step,
         ran: Ran<Arc<Finding<Site>>>,
-        program: &ProgramIndex<'_>,
+        judged: &ProgramIndex<'_>,
     ) -> Ran<Arc<Finding<Site>>> {
         let Step { key, target, facts, outline, from } = step;
-        let state = match from {
-            Some(from) => from.join(facts, outline, ran),
-            None => State { kept: Kept::of(program, &ran), target, facts, outline, summary: program.summary(), ran },
+        let (asked, asked_of_all) = judged.asked();
+        let (ran, asked_of_all, kept) = match from {
+            Some(from) => from.join(ran, asked, asked_of_all),
+            None => (ran, asked_of_all, Kept::Asked(asked)),
         };
+        let state = State { target, facts, outline, summary: judged.summary(), ran, asked_of_all, kept };
         let ran = state.ran.clone();
         let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner);
         let of_program = states.entry(key).or_default();
@@ -122,68 +132,149 @@ impl Memory {
 
 impl Step {
     /// The islands to judge anew; `None` when that is the whole program.
-    pub(super) fn part<'a>(&self, skeleton: &Rc<Skeleton<'a>>) -> Option<ProgramIndex<'a>> {
+    pub(super) fn part<'a>(&self, whole: &ProgramIndex<'a>) -> Option<ProgramIndex<'a>> {
         let from = self.from.as_ref()?;
-        Some(from.kept.islands.part(skeleton, &from.moved, &from.units, from.state.summary.clone()))
+        let moved = from.moved.as_ref()?;
+        Some(from.known.islands.part(whole.skeleton(), moved, &from.units, whole.summary()))
     }
 }
 
 impl State {
-    /// Goes to a program in which some units have moved: what is kept of it, and the objects to judge anew. `None`, and
-    /// nothing has happened, when those are all.
-    fn follow(
-        &mut self,
-        facts: &[Arc<UnitFacts>],
-        by: &Moved,
-        program: &ProgramIndex<'_>,
-    ) -> Option<(Kept, FxHashSet<u32>)> {
-        // Another state has shown what can be said of all objects now.
-        if program.known().is_some() && program.summary() != self.summary {
-            return None;
-        }
-        let old = || Skeleton::new(program.family, self.facts.iter().map(AsRef::as_ref).collect());
-        let mut kept = self.kept.take().unwrap_or_else(|| {
-            let islands = Islands::new(&old(), &self.facts);
-            let subjects = self.ran.findings.iter().map(|it| islands.at(it.place)).collect();
-            Kept { islands: Arc::new(islands), subjects }
-        });
-        let islands = Arc::make_mut(&mut kept.islands);
+    /// Goes to a program in which some units have moved.
+    fn follow(self, facts: &[Arc<UnitFacts>], by: Moved, program: &ProgramIndex<'_>) -> From {
+        let Self { ran, asked_of_all, .. } = self;
+        let mut known = match self.kept {
+            Kept::Known(known) => known,
+            Kept::Asked(asked) => {
+                let old = Skeleton::new(program.family, self.facts.iter().map(AsRef::as_ref).collect());
+                Known::new(Arc::new(Islands::new(&old, &self.facts)), &ran, asked)
+            }
+        };
+        let islands = Arc::make_mut(&mut known.islands);
         let mut moved = islands.update(program, facts, &by.changed, &by.units);
-        islands.close(&mut moved);
-        program.know(kept.islands.clone());
-        if program.summary() != self.summary {
-            Arc::make_mut(&mut kept.islands).update(&old(), &self.facts, &by.changed, &by.units);
-            self.kept = Some(kept);
-            return None;
+        program.know(known.islands.clone());
+        let summary = program.summary();
+        let changed = self.summary.difference(&summary);
+        if asked_of_all.meet(changed) {
+            return From { ran, asked_of_all, known, units: by.units, moved: None };
         }
-        Some((kept, moved))
+        let islands = &known.islands;
+        if !changed.is_empty() {
+            let tells_otherwise = |asked: Questions, it: u32| {
+                islands.get(it).is_some_and(|it| self.summary.tells_otherwise(&summary, changed, asked, it))
+            };
+            moved.extend(known.asked.iter().filter(|(it, asked)| tells_otherwise(**asked, **it)).map(|it| it.0));
+        }
+        islands.close(&mut moved);
+        From { ran, asked_of_all, known, units: by.units, moved: Some(moved) }
     }
 }
 
 impl From {
-    /// The state of the program now, of which `ran` was found in the part that moved.
-    fn join(self, facts: Vec<Arc<UnitFacts>>, outline: Outline, ran: Ran<Arc<Finding<Site>>>) -> State {
-        let Self { state, kept: Kept { islands, subjects }, units, moved } = self;
+    /// All findings about the program now, with what was asked for them; `ran` and `asked` are of the part that moved.
+    fn join(
+        self,
+        ran: Ran<Arc<Finding<Site>>>,
+        asked: AskedFor,
+        asked_of_all: Questions,
+    ) -> (Ran<Arc<Finding<Site>>>, Questions, Kept) {
+        let Known { islands, subjects, asked: mut known } = self.known;
+        let Some(moved) = self.moved else {
+            let known = Known::new(islands, &ran, asked);
+            return (ran, asked_of_all, Kept::Known(known));
+        };
         let has_moved = |(finding, subjects): &(Arc<Finding<Site>>, Vec<u32>)| match subjects[..] {
-            [] => units.binary_search(&finding.place.unit).is_ok(),
+            [] => self.units.binary_search(&finding.place.unit).is_ok(),
             _ => subjects.iter().any(|it| moved.contains(it)),
         };
-        let unmoved = state.ran.findings.into_iter().zip(subjects).filter(|it| !has_moved(it));
+        let unmoved = self.ran.findings.into_iter().zip(subjects).filter(|it| !has_moved(it));
         let (mut findings, mut subjects): (Vec<Arc<Finding<Site>>>, Vec<Vec<u32>>) = unmoved.unzip();
         subjects.extend(ran.findings.iter().map(|it| islands.at(it.place)));
         findings.extend(ran.findings);
-        let mut failed = state.ran.failed;
+        let mut failed = self.ran.failed;
         failed.extend(ran.failed);
         failed.sort_unstable();
         failed.dedup();
-        let ran = Ran { findings, failed };
-        State {
-            target: state.target,
-            facts,
-            outline,
-            summary: state.summary,
-            ran,
-            kept: Some(Kept { islands, subjects }),
+        known.retain(|it, _| !moved.contains(it));
+        known.extend(asked.into_iter().filter_map(|(of, it)| Some((islands.object(of)?, it))));
+        let asked_of_all = self.asked_of_all.join(asked_of_all);
+        (Ran { findings, failed }, asked_of_all, Kept::Known(Known { islands, subjects, asked: known }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use salsa::Setter as _;
+
+    use super::*;
+    use crate::db::{Db as _, Input, RootDatabase, index, program_facts, programs, run_program_rules};
+    use crate::lint::settings::Settings;
+    use crate::lint::{Check, ProgramCx};
+    use crate::source::detect::Dialect;
+
+    /// The memory bits that each text makes judge anew, after the one before it; `None` for all objects.
+    fn judged(texts: &[&str]) -> Vec<Option<Vec<String>>> {
+        let mut db = RootDatabase::new(Settings::default(), None);
+        let file = db.set_files([Input::from_text("p/a.awl", texts[0], Dialect::Step7)])[0];
+        let memory = Memory::default();
+        let mut judged = Vec::new();
+        for text in texts {
+            let content: Arc<str> = (*text).into();
+            file.set_content(&mut db).to(content.into());
+            let program = programs(&db)[0];
+            let facts = program_facts(&db, program);
+            let whole = index(&db, program, &facts);
+            let settings = db.project().settings(&db);
+            let target = settings.target_or(Family::Step7, None);
+            let step = memory.step((String::new(), Family::Step7), target, &facts, &whole);
+            judged.push(step.from.as_ref().and_then(|from| {
+                let of = from.moved.as_ref()?.iter().filter_map(|it| from.known.islands.get(*it));
+                let mut names: Vec<String> = of.map(|it| it.text.replace(' ', "")).collect();
+                names.retain(|it| it.starts_with('M'));
+                names.sort();
+                Some(names)
+            }));
+            let part = step.part(&whole);
+            let judged = part.as_ref().unwrap_or(&whole);
+            let ran =
+                run_program_rules(&ProgramCx::new(judged, settings, &target), |it| matches!(it, Check::Object(_)));
+            memory.keep(step, ran, judged);
         }
+        judged
+    }
+
+    fn program(edited: &str) -> String {
+        format!(
+            "ORGANIZATION_BLOCK OB 1\nBEGIN\nCALL FC 1\nCALL FC 2\nCALL FC 3\nEND_ORGANIZATION_BLOCK\n\
+             FUNCTION FC 1 : VOID\nBEGIN\nU E 0.0\nS M 1.0\nU M 1.0\n= A 0.0\n\
+             U E 0.1\nS M 2.0\nU E 0.2\nR M 2.0\nU M 2.0\n= A 0.1\n\
+             U M 3.0\n= A 0.2\nU E 0.3\n= M 4.0\nU M 4.0\n= A 0.3\nEND_FUNCTION\n\
+             FUNCTION FC 2 : VOID\nBEGIN\nU M 6.0\n= A 0.4\n{edited}END_FUNCTION\n\
+             FUNCTION FC 3 : VOID\nBEGIN\nU E 1.0\n= M 5.0\nEND_FUNCTION\n"
+        )
+    }
+
+    #[test]
+    fn what_is_written_by_a_pointer_bears_on_those_that_asked() {
+        let (plain, pointer) = (program("L EW 4\nT AW 4\n"), program("L EW 4\nT MW [MD 100]\n"));
+        let moved = judged(&[&plain, &pointer, &pointer, &plain, &pointer]);
+        let names = |it: &[&str]| Some(it.iter().map(|it| (*it).to_owned()).collect::<Vec<_>>());
+        // Those of the block that was edited, and those that would be missing a write or reset. What is never read would
+        // not ask for writes.
+        let there = names(&["M1.0", "M3.0", "M6.0", "MD100"]);
+        assert_eq!(moved[0], None, "nothing is known yet");
+        assert_eq!(moved[1], there);
+        assert_eq!(moved[2], names(&[]));
+        assert_eq!(moved[3], there);
+        assert_eq!(moved[4], there);
+    }
+
+    #[test]
+    fn what_is_used_by_a_symbol_bears_on_those_that_asked() {
+        let (plain, symbol) = (program("L EW 4\nT AW 4\n"), program("U \"ready\"\nR \"done\"\n"));
+        let moved = judged(&[&plain, &symbol, &plain]);
+        let names = |it: &[&str]| Some(it.iter().map(|it| (*it).to_owned()).collect::<Vec<_>>());
+        let there = names(&["M1.0", "M3.0", "M5.0", "M6.0"]);
+        assert_eq!(moved, [None, there.clone(), there]);
     }
 }

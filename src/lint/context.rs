@@ -192,9 +192,9 @@ impl<'a> ProgramCx<'a> {
         })
     }
 
-    /// Outputs, memory bits and bits by symbol of which the program shows all: it is whole, and nothing but the bit's own uses
-    /// gives it a value (no index, no pointer, no word or table that covers it). A memory bit is among them when something
-    /// reads it. Of these, rules may say that a place is missing, if [`Hidden`](crate::analysis::drives::Hidden) does not hold it.
+    /// Outputs, memory bits and bits by symbol of which the program shows all: it is whole, and no other object that it names
+    /// gives the bit a value (no word or table that covers it). A memory bit is among them when something reads it. Of these,
+    /// rules may say that a place is missing, unless it is [unseen](crate::analysis::unseen::Unseen::may_give).
     pub fn known_bits(&self) -> impl Iterator<Item = &ObjectUses<'a>> {
         let objects = (0..).zip(&self.program.objects).filter(|_| self.program.complete);
         objects.filter(|&(at, it)| self.is_known_bit(at, it)).map(|it| it.1)
@@ -208,9 +208,7 @@ impl<'a> ProgramCx<'a> {
         }
         let mut neighbours = self.neighbours(at).iter().map(|&it| &self.program.objects[it as usize]);
         let is_read = class != Class::Memory || uses.is_read() || neighbours.clone().any(ObjectUses::is_read);
-        is_read
-            && !self.program.writes_indirectly(&uses.object.footprint.area)
-            && !neighbours.any(ObjectUses::is_written)
+        is_read && !neighbours.any(ObjectUses::is_written)
     }
 
     /// See [`ProgramIndex::overlaps`].

@@ -215,8 +215,8 @@ impl Written {
 fn constants(program: &ProgramIndex<'_>, uses: &ObjectUses<'_>) -> Vec<(i64, Site)> {
     let is_own = uses.object.class == Class::Memory
         && uses.object.is_fixed()
-        && !program.writes_indirectly(&uses.object.footprint.area)
-        && !program.has_unresolved(|it| it.writes());
+        && !program.unseen(uses).is_written()
+        && !program.unseen(uses).has_unresolved(Mode::writes);
     let mut writes = uses.with_mode(|it| it.writes() || matches!(it, Mode::Drive(_))).peekable();
     if !is_own || writes.peek().is_none() {
         return Vec::new();

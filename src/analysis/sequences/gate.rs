@@ -1,10 +1,11 @@
 //! Whether it is worth while to follow a scan: most programs set and reset bits, and few of them hand an activity over.
 
+use std::cell::OnceCell;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::code::{Ask, CodeFacts, How};
-use crate::analysis::facts::UnitFacts;
-use crate::analysis::islands::Islands;
+use super::code::{Ask, How};
+use crate::analysis::facts::{FactObject, UnitFacts};
 use crate::analysis::program::ProgramIndex;
 use crate::model::layout::DataType;
 use crate::model::object::Class;
@@ -13,122 +14,209 @@ use crate::model::unit::Section;
 /// A bit of the program, or one that a unit has for itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Bit {
-    /// By the hash of what it is: two that are taken for one only open the gate.
+    /// By its number in the program; or by the hash of what it is: two that are taken for one only open the gate.
     Shared(u64),
     Own(u32, u32),
     /// One that other blocks may know by another name.
     Open,
 }
 
+/// A bit that is asked for.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    bit: Bit,
+    /// Whether it is one of a data block.
+    is_data: bool,
+}
+
+/// What a unit tells the gate.
+#[derive(Debug, Clone)]
+pub(in crate::analysis) struct Told {
+    may_evolve: bool,
+    may_be_step: bool,
+    held: u32,
+    /// Whether it sets or resets bits that other blocks may know by another name.
+    gives_open: bool,
+    /// Bits of its own that it both sets and resets. Sorted.
+    own: Box<[u32]>,
+    /// Bits that it sets or resets, with another bit that this asks for.
+    handed: Box<[(Bit, Asked)]>,
+    /// The same of bits that it assigns.
+    assigned: Box<[(Bit, Asked)]>,
+}
+
+impl Told {
+    /// `shared`: what tells an object that other units can name.
+    pub(in crate::analysis) fn new(
+        unit: u32,
+        facts: &UnitFacts,
+        shared: impl Fn(u32, &FactObject) -> u64,
+    ) -> Option<Self> {
+        let code = facts.code.as_deref()?;
+        let class = |object: u32| facts.objects.get(object as usize).map(|it| it.object.class);
+        let bit = |object: u32| bit(unit, facts, object, &shared);
+        let ask = |it: &Ask| {
+            let of = it.of.filter(|of| *of != it.object)?;
+            Some((bit(it.object), Asked { bit: bit(of), is_data: class(of) == Some(Class::Data) }))
+        };
+        let (mut sets, mut resets, mut gives_open) = (Vec::new(), Vec::new(), false);
+        for it in code.asks.iter().filter(|it| stores(it)) {
+            match bit(it.object) {
+                Bit::Own(_, object) if it.how == How::Set => sets.push(object),
+                Bit::Own(_, object) => resets.push(object),
+                Bit::Open => gives_open = true,
+                Bit::Shared(_) => {}
+            }
+        }
+        resets.sort_unstable();
+        sets.retain(|it| resets.binary_search(it).is_ok());
+        sets.sort_unstable();
+        let of_assigned = |it: &&Ask| it.how == How::Assign;
+        let assigned = code.asks.iter().filter(of_assigned).filter_map(|it| {
+            let of = it.of?;
+            Some((bit(it.object), Asked { bit: bit(of), is_data: class(of) == Some(Class::Data) }))
+        });
+        Some(Self {
+            may_evolve: code.may_evolve,
+            may_be_step: code.may_be_step,
+            held: code.held,
+            gives_open,
+            own: sets.into(),
+            handed: code.asks.iter().filter(|it| stores(it)).filter_map(ask).collect(),
+            assigned: assigned.collect(),
+        })
+    }
+}
+
+fn stores(it: &Ask) -> bool {
+    matches!(it.how, How::Set | How::Reset)
+}
+
+/// What assigned bits ask for, with the unit that says so.
+#[derive(Debug, Clone, Default)]
+pub(in crate::analysis) struct Assigned(FxHashMap<Bit, Vec<(u32, Asked)>>);
+
+impl Assigned {
+    pub(in crate::analysis) fn insert(&mut self, unit: u32, told: &Told) {
+        for (bit, asked) in &told.assigned {
+            self.0.entry(*bit).or_default().push((unit, *asked));
+        }
+    }
+
+    pub(in crate::analysis) fn remove(&mut self, unit: u32, told: &Told) {
+        for (bit, _) in &told.assigned {
+            if let Some(list) = self.0.get_mut(bit) {
+                list.retain(|it| it.0 != unit);
+            }
+        }
+    }
+}
+
 /// Whether some unit may be part of a sequence: it complements words; enough bits hold themselves; a block is called that may
 /// be a step; or a bit that is both set and reset asks twice, or is asked for, in what sets and resets, by others of them. One
 /// that is asked for by way of assigned bits counts for two.
 pub(super) fn may_evolve(program: &ProgramIndex<'_>) -> bool {
+    if let Some(islands) = program.known() {
+        let is_given = |it: u64| u32::try_from(it).is_ok_and(|it| islands.is_set_and_reset(it));
+        return is_open(program, islands.told(), is_given, || islands.assigned());
+    }
+    let units = || (0..).zip(&program.units).map(|(unit, facts)| (unit, *facts));
+    let shared = |_: u32, it: &FactObject| it.hash;
+    let told: Vec<Option<Told>> = units().map(|(unit, facts)| Told::new(unit, facts, shared)).collect();
+    let mut given: FxHashMap<u64, [bool; 2]> = FxHashMap::default();
+    for (unit, facts) in units() {
+        for it in facts.code.iter().flat_map(|it| &it.asks).filter(|it| stores(it)) {
+            if let Bit::Shared(hash) = bit(unit, facts, it.object, &shared) {
+                given.entry(hash).or_default()[usize::from(it.how == How::Set)] = true;
+            }
+        }
+    }
+    let assigned: OnceCell<Assigned> = OnceCell::new();
+    let assigned = || {
+        assigned.get_or_init(|| {
+            let mut found = Assigned::default();
+            (0..).zip(&told).for_each(|(unit, it)| it.iter().for_each(|it| found.insert(unit, it)));
+            found
+        })
+    };
+    let is_given = |it: u64| given.get(&it) == Some(&[true; 2]);
+    is_open(program, told.iter().map(Option::as_ref), is_given, assigned)
+}
+
+/// `told`: by unit. `is_given`: whether a shared bit is both set and reset.
+fn is_open<'t>(
+    program: &ProgramIndex<'_>,
+    told: impl Iterator<Item = Option<&'t Told>>,
+    is_given: impl Fn(u64) -> bool,
+    assigned: impl Fn() -> &'t Assigned,
+) -> bool {
     /// Fewer calls of one block are no steps that follow one another.
     const FEWEST_CALLS: usize = 2;
     /// A loop of two steps goes to each of them, and on from it.
     const FEWEST_HANDED: u32 = 2;
     /// Fewer bits that hold themselves are no table.
     const FEWEST_HELD: u32 = 3;
-    let all = || (0..).zip(&program.units).filter_map(|(unit, facts)| Some((unit, *facts, facts.code.as_deref()?)));
-    let is_step = |unit: u32, it: &CodeFacts| {
+    let told: Vec<Option<&Told>> = told.collect();
+    let all = || (0..).zip(&told).filter_map(|(unit, it): (u32, _)| Some((unit, (*it)?)));
+    let is_step = |unit: u32, it: &Told| {
         it.may_be_step && program.callers.get(unit as usize).is_some_and(|it| it.len() >= FEWEST_CALLS)
     };
-    if all().any(|(unit, _, it)| it.may_evolve || is_step(unit, it)) {
+    if all().any(|(unit, it)| it.may_evolve || is_step(unit, it)) {
         return true;
     }
-    if all().map(|it| it.2.held).fold(0, u32::saturating_add) >= FEWEST_HELD {
+    if all().map(|it| it.1.held).fold(0, u32::saturating_add) >= FEWEST_HELD {
         return true;
     }
-    let stores = |it: &&Ask| matches!(it.how, How::Set | How::Reset);
-    let mut steps = Steps { islands: program.known().map(AsRef::as_ref), given: FxHashMap::default() };
-    for (unit, facts, code) in all() {
-        code.asks.iter().filter(stores).for_each(|it| steps.insert(bit(unit, facts, it.object), it.how));
-    }
-    let is_open = steps.given.contains_key(&Bit::Open);
-    let is_step = |unit: u32, facts: &UnitFacts, object: u32| {
-        let by_another_name = || facts.objects.get(object as usize).is_some_and(|it| it.object.class == Class::Data);
-        steps.contains(unit, object, bit(unit, facts, object)) || is_open && by_another_name()
+    let gives_open = all().any(|it| it.1.gives_open);
+    let is_step = |it: &Asked| {
+        let is_given = match it.bit {
+            Bit::Shared(it) => is_given(it),
+            Bit::Own(unit, object) => {
+                let told = told.get(unit as usize).copied().flatten();
+                told.is_some_and(|it| it.own.binary_search(&object).is_ok())
+            }
+            Bit::Open => gives_open,
+        };
+        is_given || gives_open && it.is_data
     };
     let mut handed: FxHashMap<Bit, u32> = FxHashMap::default();
-    // What assigned bits ask for, looked up when one of them is asked for.
-    let mut assigned: Option<FxHashMap<Bit, Vec<(u32, u32)>>> = None;
-    let mut seen: FxHashSet<Bit> = FxHashSet::default();
-    let mut open: Vec<(u32, u32)> = Vec::new();
-    for (unit, facts, code) in all() {
-        for it in code.asks.iter().filter(stores) {
-            let Some(of) = it.of else { continue };
-            if of != it.object && is_step(unit, facts, of) {
-                for it in [it.object, of].map(|it| bit(unit, facts, it)) {
-                    let count = handed.entry(it).or_default();
-                    *count += 1;
-                    if *count >= FEWEST_HANDED || it == Bit::Open || is_open {
-                        return true;
-                    }
-                }
-            } else if of != it.object {
-                open.push((unit, of));
+    let mut open: Vec<Bit> = Vec::new();
+    for (to, of) in all().flat_map(|it| &it.1.handed) {
+        if !is_step(of) {
+            open.push(of.bit);
+            continue;
+        }
+        for it in [*to, of.bit] {
+            let count = handed.entry(it).or_default();
+            *count += 1;
+            if *count >= FEWEST_HANDED || it == Bit::Open || gives_open {
+                return true;
             }
         }
     }
-    while let Some((unit, object)) = open.pop() {
-        let Some(facts) = program.units.get(unit as usize) else { continue };
-        let of = bit(unit, facts, object);
+    let mut seen: FxHashSet<Bit> = FxHashSet::default();
+    while let Some(of) = open.pop() {
         if !seen.insert(of) {
             continue;
         }
-        let assigned = assigned.get_or_insert_with(|| {
-            let mut found: FxHashMap<Bit, Vec<(u32, u32)>> = FxHashMap::default();
-            for (unit, facts, code) in all() {
-                for it in code.asks.iter().filter(|it| it.how == How::Assign) {
-                    let asked = it.of.map(|of| (unit, of));
-                    found.entry(bit(unit, facts, it.object)).or_default().extend(asked);
-                }
-            }
-            found
-        });
-        for &(unit, object) in assigned.get(&of).into_iter().flatten() {
-            let Some(facts) = program.units.get(unit as usize) else { continue };
-            if is_step(unit, facts, object) {
+        // What assigned bits ask for is looked up when one of them is asked for.
+        for (_, it) in assigned().0.get(&of).into_iter().flatten() {
+            if is_step(it) {
                 return true;
             }
-            open.push((unit, object));
+            open.push(it.bit);
         }
     }
     false
 }
 
-/// Bits that are both set and reset.
-struct Steps<'p> {
-    /// What is known of those that units share.
-    islands: Option<&'p Islands>,
-    /// Of the others, whether something resets them, and sets them.
-    given: FxHashMap<Bit, [bool; 2]>,
-}
-
-impl Steps<'_> {
-    fn insert(&mut self, bit: Bit, how: How) {
-        if self.islands.is_none() || !matches!(bit, Bit::Shared(_)) {
-            self.given.entry(bit).or_default()[usize::from(how == How::Set)] = true;
-        }
-    }
-
-    fn contains(&self, unit: u32, object: u32, bit: Bit) -> bool {
-        match (bit, self.islands) {
-            (Bit::Open, _) => self.given.contains_key(&bit),
-            (Bit::Shared(_), Some(islands)) => islands.modes(unit, object).set_and_reset(),
-            _ => self.given.get(&bit) == Some(&[true; 2]),
-        }
-    }
-}
-
-fn bit(unit: u32, facts: &UnitFacts, object: u32) -> Bit {
+fn bit(unit: u32, facts: &UnitFacts, object: u32, shared: &impl Fn(u32, &FactObject) -> u64) -> Bit {
     let Some(fact) = facts.objects.get(object as usize) else { return Bit::Open };
     match fact.object.class {
         Class::InstanceData => Bit::Open,
         Class::LocalName if !is_temporary(facts, &fact.object.text) => Bit::Open,
         Class::LocalName | Class::LocalData => Bit::Own(unit, object),
-        _ => Bit::Shared(fact.hash),
+        _ => Bit::Shared(shared(object, fact)),
     }
 }
 

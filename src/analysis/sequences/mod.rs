@@ -5,7 +5,7 @@
 //! [`judge`] asks where the scan does something else than the five rules say (GRF:128-152).
 
 pub mod code;
-mod gate;
+pub(super) mod gate;
 pub mod judge;
 pub mod set_reset;
 pub mod tables;
@@ -186,8 +186,7 @@ impl<'a> Sequence<'a> {
             });
         }
         let is_hidden = |it: &SequenceStep<'_>| {
-            !matches!(it.object.class, Class::Memory | Class::Symbol)
-                || program.writes_indirectly(&it.object.footprint.area)
+            !matches!(it.object.class, Class::Memory | Class::Symbol) || program.unseen_of(it.object).is_written()
         };
         let has_gaps = !program.complete || program.partial || trace.is_cut || steps.iter().any(is_hidden);
         let objects = trace.objects.clone();
