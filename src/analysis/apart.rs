@@ -262,7 +262,8 @@ impl<'w, 'p, 'a> Pair<'w, 'p, 'a> {
     }
 
     fn is_never(&self) -> bool {
-        self.sees_one && self.study.knows_all() && self.study.parts.iter().any(|it| self.is_never_in(it))
+        let nodes = || self.asked.iter().map(|it| it.0).chain(self.active.iter().flatten().copied());
+        self.sees_one && self.study.knows_all() && self.study.parts_of(nodes()).any(|it| self.is_never_in(it))
     }
 
     fn is_never_in(&self, part: &Part) -> bool {

@@ -271,6 +271,14 @@ impl<'p, 'a> Study<'p, 'a> {
         Some(states)
     }
 
+    /// The parts that some steps belong to.
+    pub fn parts_of(&self, nodes: impl Iterator<Item = Node>) -> impl Iterator<Item = &Part> {
+        let mut parts: Vec<usize> = nodes.filter_map(|it| *self.part_of.get(it as usize)?).collect();
+        parts.sort_unstable();
+        parts.dedup();
+        parts.into_iter().filter_map(|it| self.parts.get(it))
+    }
+
     /// Whether a step that no situation holds is surely never active.
     pub fn knows_all(&self) -> bool {
         !self.net.has_gaps && self.net.knows_presets()
