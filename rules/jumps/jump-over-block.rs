@@ -2,7 +2,7 @@
 
 use rowan::TextRange;
 
-use crate::analysis::conditions::{Memo, Space};
+use crate::analysis::conditions::{Lessons, Space};
 use crate::analysis::gaps;
 use crate::lint::{Sink, UnitCx};
 use crate::model::expr::Exprs;
@@ -14,8 +14,8 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     if model.jumps.is_empty() {
         return;
     }
-    let memo = Memo::default();
-    let space = Space::of(model).learning(&memo);
+    let lessons = Lessons::default();
+    let space = Space::of(model).learning(&lessons);
     let (skips, writes, exits) = (gaps::skips(model), gaps::writes(model), gaps::exits(model));
     let mut skipped: Vec<(u32, &Object, &Access)> = Vec::new();
     for access in model.accesses.iter().filter(|it| is_scanned(it.mode)) {

@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::chart;
-use super::conditions::{Memo, Objects, Space, Verdict};
+use super::conditions::{Lessons, Objects, Space, Verdict};
 use super::facts::{self, UnitFacts};
 use super::processing::InAction;
 use super::program::{Context, GlobalUse, ProgramIndex};
@@ -279,8 +279,8 @@ impl<'w, 'p, 'a> Pair<'w, 'p, 'a> {
         }
         let Some(states) = self.study.states(part, &part.own, &nodes, &active) else { return false };
         let (objects, family) = (Objects::Units(&self.objects), self.study.net.family());
-        let memo = Memo::default();
-        let space = Space::new(&self.exprs, objects, family).learning(&memo);
+        let lessons = Lessons::default();
+        let space = Space::new(&self.exprs, objects, family).learning(&lessons);
         states.iter().all(|state| {
             let steps = reads.iter().copied().zip(state.iter().copied());
             let all: Vec<(ExprId, bool)> = self.conditions.iter().copied().chain(steps).collect();

@@ -3,7 +3,7 @@
 use rowan::TextRange;
 use rustc_hash::FxHashMap;
 
-use super::conditions::{Memo, Space, Verdict};
+use super::conditions::{Lessons, Space, Verdict};
 use super::known::Known;
 use crate::model::UnitModel;
 use crate::model::expr::{ExprId, Exprs};
@@ -54,8 +54,8 @@ fn acts(statement: &Statement) -> bool {
 /// of arms, one that asks what an arm before it asks is left to [`repeated`].
 pub fn decided(model: &UnitModel) -> Vec<Decided> {
     let known = Known::new(model);
-    let memo = Memo::default();
-    let space = Space::of(model).learning(&memo);
+    let lessons = Lessons::default();
+    let space = Space::of(model).learning(&lessons);
     let mut paths = Paths::default();
     // What a condition tests, its statement reads, also where its form alone made it a constant.
     let mut reads = model.accesses.iter().filter(|it| it.mode.reads()).map(|it| it.statement).peekable();
@@ -118,8 +118,8 @@ fn stored(model: &UnitModel, known: &Known<'_>, condition: ExprId, path: ExprId)
 
 /// Arms of one `IF` that ask what an arm before them asks: the statements of the later and of the earlier one.
 pub fn repeated(model: &UnitModel) -> Vec<(u32, u32)> {
-    let memo = Memo::default();
-    let space = Space::of(model).learning(&memo);
+    let lessons = Lessons::default();
+    let space = Space::of(model).learning(&lessons);
     let arms = (0..).zip(&model.statements).filter(|it| before(it.1).is_some());
     arms.filter_map(|(at, _)| Some((at, repeated_arm(model, &space, at)?))).collect()
 }
@@ -150,8 +150,8 @@ fn repeated_arm(model: &UnitModel, space: &Space<'_>, arm: u32) -> Option<u32> {
 /// The statements that no values of objects let control come to, though their paths are not FALSE by form: the first and
 /// the last of each stretch.
 pub fn unreached(model: &UnitModel) -> Vec<(u32, u32)> {
-    let memo = Memo::default();
-    let space = Space::of(model).learning(&memo);
+    let lessons = Lessons::default();
+    let space = Space::of(model).learning(&lessons);
     let mut paths = Paths::default();
     let mut found: Vec<(u32, u32)> = Vec::new();
     for (at, statement) in (0..).zip(&model.statements) {

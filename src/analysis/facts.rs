@@ -9,7 +9,7 @@ use smol_str::SmolStr;
 
 use super::apart::{self, Asking};
 use super::chart::ChartFacts;
-use super::conditions::{Memo, Space, Verdict};
+use super::conditions::{Lessons, Space, Verdict};
 use super::cost::UnitCost;
 use super::gaps;
 use super::liveness::{self, Lost};
@@ -242,8 +242,8 @@ impl UnitFacts {
                 _ => {}
             }
         }
-        let memo = Memo::default();
-        let space = Space::of(model).learning(&memo);
+        let lessons = Lessons::default();
+        let space = Space::of(model).learning(&lessons);
         let groups = groups(model, space, &given);
         let writes = gaps::writes(model);
         let (skips, exits) = (gaps::skips(model), gaps::exits(model));

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use rustc_hash::FxHashMap;
 
 use super::Site;
-use super::conditions::{Memo, Space, Verdict};
+use super::conditions::{Lessons, Space, Verdict};
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::UnitModel;
 use crate::model::dfb::Role;
@@ -49,10 +49,10 @@ pub fn lost(model: &UnitModel) -> Vec<Lost> {
     if model.has_gaps || model.language == Language::Pl7Xref {
         return Vec::new();
     }
-    let memo = Memo::default();
+    let lessons = Lessons::default();
     let mut walk = Walk {
         model,
-        space: Space::of(model).learning(&memo),
+        space: Space::of(model).learning(&lessons),
         waiting: Vec::new(),
         areas: Areas::new(model),
         lists: Lists::default(),

@@ -14,7 +14,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::chart::{Chart, FactReceptivity, Step, Transition};
-use super::conditions::{Answer, Memo, Objects, Space, Verdict};
+use super::conditions::{Answer, Lessons, Objects, Space, Verdict};
 use super::facts::{self, UnitFacts};
 use super::program::ProgramIndex;
 use crate::model::chart::{Graph, StepKind, StepName};
@@ -96,7 +96,7 @@ pub struct Net<'p, 'a> {
     exprs: Exprs,
     objects: Vec<&'a Object>,
     family: Family,
-    memo: Memo,
+    lessons: Lessons,
     /// Objects that a receptivity depends on, by groups of objects that share memory.
     supports: Vec<Vec<u32>>,
     /// How many expressions each receptivity is made of.
@@ -404,7 +404,7 @@ impl<'p, 'a> Net<'p, 'a> {
             is_commanded: false,
             exprs: Exprs::default(),
             objects: Vec::new(),
-            memo: Memo::default(),
+            lessons: Lessons::default(),
             family,
             supports: Vec::new(),
             weights: Vec::new(),
@@ -481,7 +481,7 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     pub fn space(&self) -> Space<'_> {
-        Space::new(&self.exprs, Objects::Units(&self.objects), self.family).learning(&self.memo)
+        Space::new(&self.exprs, Objects::Units(&self.objects), self.family).learning(&self.lessons)
     }
 
     /// `id`: what an object of a unit is called here.

@@ -9,7 +9,7 @@ use SyntaxKind::{
 };
 use logos::{Lexer, Logos};
 
-use super::parser::Tokens;
+use super::tokens::Tokens;
 use super::{AstNode, Language, Memo, Parse, Parser, SyntaxKind, SyntaxNode, SyntaxToken};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 //!
 //! A program says most of its statements many times. Of a piece of text that is read again the tokens are copied, and
 //! where its first reading gave one whole node without a fault, that node is shared. A lexer says where pieces may lie
-//! ([`Tokens::piece`](super::parser::Tokens::piece)), a grammar which nodes it asks for
-//! ([`Parser::recall`](super::Parser)).
+//! ([`Tokens::of_pl7`](super::tokens::Tokens::of_pl7)), a grammar which nodes it asks for
+//! ([`Parser::recall`](super::Parser)). The statements of lists and of structured text hardly repeat: they have no pieces.
 //!
 //! **Invariant**: a tree is the same with any memo. So a piece ends where no token can go on, whatever follows; a node is
 //! shared only where what the grammar looked at was the piece and the context that is compared with it.
@@ -45,7 +45,7 @@ pub struct Memo {
 pub(super) struct Unread {
     slot: u32,
     hash: u32,
-    grammar: Grammar,
+    of: Pieces,
 }
 
 impl Default for Memo {
@@ -85,7 +85,7 @@ pub(super) struct PieceTrivia {
 pub(super) struct Slot {
     /// Which filling of a slot it is: no two of a memo have the same. 0 when empty.
     stamp: u32,
-    grammar: u8,
+    of: Pieces,
     len: u8,
     text: [u8; LONGEST_PIECE],
     significant_len: u8,
@@ -98,7 +98,7 @@ pub(super) struct Slot {
 impl Slot {
     const EMPTY: Self = Self {
         stamp: 0,
-        grammar: 0,
+        of: Pieces::Ld,
         len: 0,
         text: [0; LONGEST_PIECE],
         significant_len: 0,
@@ -127,9 +127,7 @@ pub(super) struct Key {
 /// Whose pieces: those of another grammar have other tokens and nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
-pub(super) enum Grammar {
-    Il,
-    St,
+pub(super) enum Pieces {
     Ld,
     Chart,
     Pl72Ld,
@@ -160,19 +158,19 @@ impl Memo {
 
     /// The tokens of the piece, if they are kept; else whether they should be.
     #[inline]
-    pub(super) fn find(&mut self, grammar: Grammar, text: &[u8], hash: u64) -> Result<(Key, &Slot), Option<Unread>> {
+    pub(super) fn find(&mut self, of: Pieces, text: &[u8], hash: u64) -> Result<(Key, &Slot), Option<Unread>> {
         if self.slots.is_empty() {
             self.slots = vec![Slot::EMPTY; self.most];
             self.hashes = vec![0; self.most];
             self.marks = vec![0; self.most * MARKS];
         }
-        let hash = (hash ^ grammar as u64).wrapping_mul(MULTIPLIER);
+        let hash = (hash ^ of as u64).wrapping_mul(MULTIPLIER);
         let at = (hash >> 52) as usize & self.slots.len().wrapping_sub(1);
         let (slot, tag) = (at as u32, hash as u32);
         if self.hashes.get(at) == Some(&tag)
             && let Some(it) = self.slots.get(at)
             && it.stamp != 0
-            && it.grammar == grammar as u8
+            && it.of == of
             && it.text.get(..usize::from(it.len)) == Some(text)
         {
             return Ok((Key { slot, stamp: it.stamp }, it));
@@ -180,13 +178,13 @@ impl Memo {
         let mark = (hash >> 48) as usize & self.marks.len().wrapping_sub(1);
         let Some(mark) = self.marks.get_mut(mark) else { return Err(None) };
         let is_seen = std::mem::replace(mark, hash as u16) == hash as u16;
-        Err(is_seen.then_some(Unread { slot, hash: tag, grammar }))
+        Err(is_seen.then_some(Unread { slot, hash: tag, of }))
     }
 
     /// Keeps the tokens of a piece; `None` if they are more than a slot takes.
     pub(super) fn keep(
         &mut self,
-        Unread { slot, hash, grammar }: Unread,
+        Unread { slot, hash, of }: Unread,
         text: &[u8],
         significant: impl ExactSizeIterator<Item = PieceToken>,
         trivia: impl ExactSizeIterator<Item = PieceTrivia>,
@@ -195,7 +193,7 @@ impl Memo {
         let it = self.slots.get_mut(slot as usize).filter(|_| fits)?;
         it.text.get_mut(..text.len())?.copy_from_slice(text);
         it.len = u8::try_from(text.len()).ok()?;
-        it.grammar = grammar as u8;
+        it.of = of;
         it.significant_len = u8::try_from(significant.len()).ok()?;
         it.trivia_len = u8::try_from(trivia.len()).ok()?;
         it.significant.iter_mut().zip(significant).for_each(|(kept, it)| *kept = it);
@@ -221,16 +219,11 @@ impl Memo {
     }
 }
 
-impl Grammar {
-    /// Whether pieces are worth their while: the statements of lists and of structured text hardly repeat.
-    pub(super) fn has_pieces(self) -> bool {
-        !matches!(self, Self::Il | Self::St)
-    }
-
+impl Pieces {
     /// Whether a piece may start behind a token.
     pub(super) fn starts_piece(self, kind: SyntaxKind) -> bool {
         match kind {
-            SyntaxKind::Newline | SyntaxKind::Semicolon => self.has_pieces(),
+            SyntaxKind::Newline | SyntaxKind::Semicolon => true,
             SyntaxKind::Comma => self.is_ladder(),
             _ => false,
         }

@@ -12,6 +12,7 @@ mod memo;
 mod node;
 mod packed;
 mod parser;
+mod tokens;
 
 pub mod awl;
 pub mod exchange;
@@ -23,11 +24,10 @@ pub mod words;
 pub mod xref;
 
 pub use kind::SyntaxKind;
-use memo::Grammar;
 pub use memo::Memo;
 pub use node::{AstChildren, AstNode, Elements, SyntaxElement, SyntaxNode, SyntaxToken, Walk, WalkEvent};
-use parser::Tokens;
 pub use parser::{Completed, MAX_DEPTH, Marker, Parse, Parser, SyntaxError};
+use tokens::Tokens;
 
 /// Mnemonic set of a Siemens program: the same word means different things in the two (`SE`, `A`, `AD`, `E`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -103,12 +103,14 @@ fn parse_with(language: Language, text: &str, memo: &mut Memo) -> Parse {
         Language::Awl(mnemonics) => awl::parse_with(text, mnemonics, memo),
         Language::Step5(mnemonics) => step5::parse_with(text, mnemonics, memo),
         Language::Step5Symbols => step5::symbols::parse_with(text, memo),
-        Language::Pl7Il => pl7::parse_with(text, Grammar::Il, memo),
-        Language::Pl7St => pl7::parse_with(text, Grammar::St, memo),
-        Language::Pl7Ld => pl7::parse_with(text, Grammar::Ld, memo),
-        Language::Pl7Gr7 | Language::Sfc => pl7::parse_with(text, Grammar::Chart, memo),
-        Language::Pl72Ld => pl7::parse_with(text, Grammar::Pl72Ld, memo),
-        Language::Pl72Gr7 | Language::Pl72Sfc => pl7::parse_with(text, Grammar::Pl72Chart, memo),
+        Language::Pl7Il
+        | Language::Pl7St
+        | Language::Pl7Ld
+        | Language::Pl7Gr7
+        | Language::Sfc
+        | Language::Pl72Ld
+        | Language::Pl72Gr7
+        | Language::Pl72Sfc => pl7::parse_with(text, language, memo),
         Language::Exchange => exchange::parse_with(text, memo),
         Language::SymbolTable => symbol_table::parse_with(text, memo),
         Language::Pl7Xref => xref::parse_with(text, memo),

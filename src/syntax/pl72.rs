@@ -6,8 +6,8 @@
 use logos::{Lexer, Logos};
 
 use super::SyntaxKind;
-use super::memo::{Grammar, Memo};
-use super::parser::{Tokens, comment_length};
+use super::memo::{Memo, Pieces};
+use super::tokens::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
@@ -227,29 +227,8 @@ fn address(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 }
 
 /// The tokens of the content of a block. Their lengths add up to the text, for every text.
-pub(super) fn lex(text: &str, grammar: Grammar, memo: &mut Memo) -> Tokens {
-    let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
-    let mut lexer = Lexeme::lexer(text);
-    // Whether a piece may start here.
-    let has_pieces = grammar.has_pieces();
-    let mut starts = has_pieces;
-    loop {
-        if starts && let Some((piece, more)) = tokens.pl7_piece(memo, grammar, text, lexer.remainder()) {
-            lexer.bump(piece);
-            let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
-            lexer.bump(blanks);
-            starts = more || begins_line;
-            continue;
-        }
-        let Some(lexeme) = lexer.next() else { break };
-        let kind = lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from);
-        tokens.push(kind, lexer.slice().len());
-        tokens.end_piece(memo, text);
-        let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
-        lexer.bump(blanks);
-        starts = begins_line && has_pieces || grammar.starts_piece(kind);
-    }
-    tokens
+pub(super) fn lex(text: &str, pieces: Option<Pieces>, memo: &mut Memo) -> Tokens {
+    Tokens::of_pl7::<Lexeme>(text, pieces, memo, |_, _| 0)
 }
 
 #[cfg(test)]
@@ -257,11 +236,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::syntax::parser::Token;
+    use crate::syntax::tokens::Token;
     use SyntaxKind::*;
 
     fn lex(text: &str) -> Tokens {
-        super::lex(text, Grammar::Pl72Ld, &mut Memo::for_text(text))
+        super::lex(text, Some(Pieces::Pl72Ld), &mut Memo::for_text(text))
     }
 
     fn kinds(text: &str) -> Vec<SyntaxKind> {

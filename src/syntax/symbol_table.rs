@@ -14,7 +14,7 @@
 use super::SyntaxKind::{
     Address, Comma, Error, FreeText, Ident, Newline, ObjectRef, TypeRef, VarDecl, VarName, Whitespace,
 };
-use super::parser::Tokens;
+use super::tokens::Tokens;
 use super::{Language, Memo, Parse, Parser, SyntaxKind};
 
 /// Parses one table. Total and linear for every text; what is no row is an error node.

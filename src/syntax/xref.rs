@@ -4,7 +4,7 @@
 use super::SyntaxKind::{
     Error, FreeText, Heading, Ident, Newline, ObjectRef, Unknown, Whitespace, XrefEntry, XrefPlace,
 };
-use super::parser::Tokens;
+use super::tokens::Tokens;
 use super::{Language, Memo, Parse, Parser, SyntaxKind};
 
 /// Ways in which an entry may use its object: reads, writes, executes, writes by a function, reads and writes by one.

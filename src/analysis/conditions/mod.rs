@@ -10,16 +10,14 @@
 //! compared with one another, computed values, and words that overlap are taken as free of one another.
 
 mod cases;
+mod lessons;
 mod problem;
 mod solver;
 mod table;
 
-use std::cell::RefCell;
 use std::cmp::Ordering;
 
-use rustc_hash::FxHashMap;
-
-use cases::Cases;
+pub use lessons::Lessons;
 use problem::{Bound, Constant, Problem, Said, WIDEST};
 use solver::Told;
 use table::Table;
@@ -38,25 +36,8 @@ pub struct Space<'a> {
     pub family: Family,
     /// Terms of which the value is known.
     known: &'a [(ExprId, i64)],
-    memo: Option<&'a Memo>,
+    lessons: Option<&'a Lessons>,
 }
-
-/// What was learnt from questions about one space, for those who ask many about the same conditions. It changes no answer
-/// but those that would be [`Verdict::NotDecided`].
-#[derive(Debug, Default)]
-pub struct Memo {
-    cases: RefCell<Cases>,
-    told: RefCell<Told>,
-    /// What was asked for which no possible case is known, and the answer: what several objects are written under is one
-    /// question.
-    asked: RefCell<FxHashMap<(Wanted, Pairs), Verdict>>,
-}
-
-/// So many answers are kept.
-const MOST_KEPT: usize = 1 << 16;
-
-type Wanted = Box<[(ExprId, bool)]>;
-type Pairs = Box<[[ExprId; 2]]>;
 
 /// Objects by [`ObjectId`]: those of a unit, or of several.
 #[derive(Debug, Clone, Copy)]
@@ -150,7 +131,7 @@ struct Question<'q> {
 
 impl<'a> Space<'a> {
     pub fn new(exprs: &'a Exprs, objects: Objects<'a>, family: Family) -> Self {
-        Self { exprs, objects, family, known: &[], memo: None }
+        Self { exprs, objects, family, known: &[], lessons: None }
     }
 
     /// The conditions of one unit.
@@ -160,10 +141,10 @@ impl<'a> Space<'a> {
         Self::new(&model.exprs, Objects::Unit(&model.objects), family)
     }
 
-    /// The same space, in which what one question teaches serves the next. A memo is of one space, to which expressions may
-    /// be added.
-    pub fn learning(self, memo: &'a Memo) -> Self {
-        Self { memo: Some(memo), ..self }
+    /// The same space, in which what one question teaches serves the next. Lessons are of one space, to which expressions
+    /// may be added.
+    pub fn learning(self, lessons: &'a Lessons) -> Self {
+        Self { lessons: Some(lessons), ..self }
     }
 
     /// The same space, where the values of some terms are known.
@@ -171,13 +152,13 @@ impl<'a> Space<'a> {
     where
         'a: 'k,
     {
-        Space { known, memo: None, ..self }
+        Space { known, lessons: None, ..self }
     }
 
     /// Whether all conditions can have the values wanted of them at one moment, and what does it.
     pub fn solve(&self, wanted: &[(ExprId, bool)]) -> Answer {
         let question = Question { wanted, never: &[] };
-        if self.memo.is_some() && self.decide(&question) == Verdict::Never {
+        if self.lessons.is_some() && self.decide(&question) == Verdict::Never {
             return Answer::Never;
         }
         let Some(problem) = Problem::new(self, &question) else { return Answer::NotDecided };
@@ -290,21 +271,12 @@ impl<'a> Space<'a> {
     }
 
     fn decide(&self, question: &Question<'_>) -> Verdict {
-        let Some(memo) = self.memo else { return self.decide_anew(question) };
-        if memo.cases.borrow().answer(question) {
-            return Verdict::Possible;
-        }
-        let key = (question.wanted.into(), question.never.into());
-        if let Some(verdict) = memo.asked.borrow().get(&key) {
-            return *verdict;
-        }
-        let is_refuted = memo.told.borrow_mut().refutes(question);
-        let verdict = if is_refuted { Verdict::Never } else { self.decide_anew(question) };
-        let mut asked = memo.asked.borrow_mut();
-        if asked.len() < MOST_KEPT {
-            asked.insert(key, verdict);
-        }
-        verdict
+        let Some(lessons) = self.lessons else { return self.decide_anew(question) };
+        lessons.answer(question).unwrap_or_else(|asked| {
+            let verdict = self.decide_anew(question);
+            lessons.keep(asked, verdict);
+            verdict
+        })
     }
 
     fn decide_anew(&self, question: &Question<'_>) -> Verdict {
@@ -313,7 +285,10 @@ impl<'a> Space<'a> {
             Some(answer) => answer,
             None => match Table::new(&problem) {
                 Some(table) => return table.decide(question),
-                None => self.decide_by_solver(&problem, question),
+                None => match self.lessons.filter(|_| problem.is_typed()) {
+                    Some(lessons) => lessons.solve(&problem, question),
+                    None => problem.solve(question, true, &mut Told::default()).0,
+                },
             },
         };
         match answer {
@@ -321,17 +296,6 @@ impl<'a> Space<'a> {
             Answer::Possible(_) => Verdict::Possible,
             Answer::NotDecided => Verdict::NotDecided,
         }
-    }
-
-    fn decide_by_solver(&self, problem: &Problem<'_, 'a>, question: &Question<'_>) -> Answer {
-        let Some(memo) = self.memo.filter(|_| problem.is_typed()) else {
-            return problem.solve(question, true, &mut Told::default()).0;
-        };
-        let (answer, values) = problem.solve(question, true, &mut memo.told.borrow_mut());
-        if let Answer::Possible(witness) = &answer {
-            memo.cases.borrow_mut().add(problem, &values, witness);
-        }
-        answer
     }
 
     /// What the form of conjuncts tells, which is most of what is asked. Sorts them, and drops what is TRUE.

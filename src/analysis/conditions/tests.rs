@@ -172,8 +172,8 @@ proptest! {
         let objects: Vec<&Object> = objects.iter().collect();
         let mut exprs = Exprs::default();
         let ids: Vec<ExprId> = formulas.iter().map(|it| it.build(&mut exprs)).collect();
-        let memo = Memo::default();
-        let space = Space::new(&exprs, Objects::Units(&objects), Family::Pl7).learning(&memo);
+        let lessons = Lessons::default();
+        let space = Space::new(&exprs, Objects::Units(&objects), Family::Pl7).learning(&lessons);
         let truths: Vec<Vec<bool>> = formulas.iter().map(|it| State::all().map(|state| it.holds(&state)).collect()).collect();
         let count = ids.len();
         for at in 0..count * count {
@@ -189,12 +189,12 @@ proptest! {
                 let is_possible = moments.any(|((first, second), third)| {
                     first == x && second == y && (never.is_empty() || !(third && second))
                 });
-                prop_assert!(is_possible || !memo.cases.borrow().answer(&question), "no such case");
+                prop_assert!(is_possible || !lessons.cases.borrow().answer(&question), "no such case");
                 let problem = Problem::new(&space, &question).unwrap();
-                let answer = space.decide_by_solver(&problem, &question);
+                let answer = lessons.solve(&problem, &question);
                 prop_assert_eq!(matches!(answer, Answer::Possible(_)), is_possible, "{:?}", answer);
                 prop_assert_eq!(answer.is_never(), !is_possible);
-                let has_case = memo.cases.borrow().answer(&question);
+                let has_case = lessons.cases.borrow().answer(&question);
                 prop_assert!(!is_possible || has_case || !problem.is_tight(), "the case that was just found");
             }
         }

@@ -10,7 +10,7 @@ use smol_str::SmolStr;
 
 use super::code::{Act, How};
 use crate::analysis::Site;
-use crate::analysis::conditions::{Answer, Memo, Objects, Space};
+use crate::analysis::conditions::{Answer, Lessons, Objects, Space};
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::program::{Context, ProgramIndex};
 use crate::model::entity::{BlockName, Family};
@@ -58,7 +58,7 @@ pub struct Trace<'a> {
     memories: FxHashMap<ObjectId, ExprId>,
     expanded: FxHashMap<ExprId, ExprId>,
     flattened: FxHashMap<ExprId, ExprId>,
-    memo: Memo,
+    lessons: Lessons,
 }
 
 /// Objects of the program and of runs of its blocks.
@@ -149,7 +149,7 @@ impl<'a> Trace<'a> {
             memories: FxHashMap::default(),
             expanded: FxHashMap::default(),
             flattened: FxHashMap::default(),
-            memo: Memo::default(),
+            lessons: Lessons::default(),
         };
         let mut runner = Runner {
             program,
@@ -266,7 +266,7 @@ impl<'a> Trace<'a> {
     }
 
     pub fn space(&self) -> Space<'_> {
-        Space::new(&self.exprs, Objects::Units(&self.objects), self.family).learning(&self.memo)
+        Space::new(&self.exprs, Objects::Units(&self.objects), self.family).learning(&self.lessons)
     }
 
     pub fn solve(&self, wanted: &[(ExprId, bool)]) -> Answer {

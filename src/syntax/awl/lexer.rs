@@ -8,7 +8,7 @@
 use logos::Logos;
 
 use crate::syntax::SyntaxKind;
-use crate::syntax::parser::{Tokens, comment_length};
+use crate::syntax::tokens::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 #[logos(extras = Extras)]

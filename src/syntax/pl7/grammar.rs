@@ -11,8 +11,9 @@ use super::dfb;
 use super::functions;
 use super::lexer::lex;
 use super::word::{self, Keyword};
+use crate::syntax::memo::Pieces;
 use crate::syntax::parser::Known;
-use crate::syntax::{MAX_DEPTH, Marker, Memo, Parse, Parser, SyntaxKind, memo, pl72};
+use crate::syntax::{Language, MAX_DEPTH, Marker, Memo, Parse, Parser, SyntaxKind, pl72};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dialect {
@@ -66,19 +67,21 @@ pub(super) struct Grammar<'p, 't> {
 }
 
 /// Parses a unit. The actions and receptivities of a chart say their own languages.
-pub(in crate::syntax) fn parse_with(text: &str, grammar: memo::Grammar, memo: &mut Memo) -> Parse {
-    use memo::Grammar as Of;
-    let (dialect, code) = match grammar {
-        Of::Il => (Dialect::Il, Code::Pl7),
-        Of::Ld => (Dialect::Ld, Code::Pl7),
-        Of::Pl72Ld => (Dialect::Ld, Code::Pl72),
-        Of::Pl72Chart => (Dialect::St, Code::Pl72),
-        Of::St | Of::Chart => (Dialect::St, Code::Pl7),
+pub(in crate::syntax) fn parse_with(text: &str, language: Language, memo: &mut Memo) -> Parse {
+    let is_chart = language.is_chart();
+    let dialect = match language {
+        Language::Pl7Il => Dialect::Il,
+        Language::Pl7Ld | Language::Pl72Ld => Dialect::Ld,
+        _ => Dialect::St,
     };
-    let is_chart = matches!(grammar, Of::Chart | Of::Pl72Chart);
+    let (code, ladder, chart) = match language.is_pl7_2() {
+        false => (Code::Pl7, Pieces::Ld, Pieces::Chart),
+        true => (Code::Pl72, Pieces::Pl72Ld, Pieces::Pl72Chart),
+    };
+    let pieces = is_chart.then_some(chart).or((dialect == Dialect::Ld).then_some(ladder));
     let tokens = match code {
-        Code::Pl7 => lex(text, grammar, memo),
-        Code::Pl72 => pl72::lex(text, grammar, memo),
+        Code::Pl7 => lex(text, pieces, memo),
+        Code::Pl72 => pl72::lex(text, pieces, memo),
     };
     let open_end = tokens.unclosed_comment().is_some();
     let mut parser = Parser::new(text, &tokens, memo);

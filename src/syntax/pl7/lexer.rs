@@ -6,8 +6,8 @@
 use logos::{Lexer, Logos};
 
 use crate::syntax::SyntaxKind;
-use crate::syntax::memo::{Grammar, Memo};
-use crate::syntax::parser::{Tokens, comment_length};
+use crate::syntax::memo::{Memo, Pieces};
+use crate::syntax::tokens::{Tokens, comment_length};
 
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Lexeme {
@@ -139,49 +139,19 @@ fn comment(lexer: &mut Lexer<'_, Lexeme>) -> Lexeme {
 }
 
 /// The lengths of the tokens add up to the text, for every text.
-pub(super) fn lex(text: &str, grammar: Grammar, memo: &mut Memo) -> Tokens {
-    if grammar.has_pieces() { lex_with::<true>(text, grammar, memo) } else { lex_with::<false>(text, grammar, memo) }
+pub(super) fn lex(text: &str, pieces: Option<Pieces>, memo: &mut Memo) -> Tokens {
+    Tokens::of_pl7::<Lexeme>(text, pieces, memo, suffix_length)
 }
 
-fn lex_with<const PIECES: bool>(text: &str, grammar: Grammar, memo: &mut Memo) -> Tokens {
-    let mut tokens = Tokens::with_capacity(text.len() / 4 + 1);
-    let mut lexer = Lexeme::lexer(text);
-    // Whether a piece may start here.
-    let mut starts = PIECES;
-    loop {
-        if PIECES
-            && starts
-            && let Some((piece, more)) = tokens.pl7_piece(memo, grammar, text, lexer.remainder())
-        {
-            lexer.bump(piece);
-            let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
-            lexer.bump(blanks);
-            starts = more || begins_line;
-            continue;
-        }
-        let Some(lexeme) = lexer.next() else { break };
-        let kind = lexeme.map_or(SyntaxKind::Unknown, SyntaxKind::from);
-        tokens.push(kind, lexer.slice().len());
-        // Only here does a `:4` or `.T` belong to what stands before it: `Pump:X4`, `%MW50[%MW5]:10`.
-        if matches!(kind, SyntaxKind::Ident | SyntaxKind::RBrack | SyntaxKind::Number)
-            && matches!(lexer.remainder().as_bytes(), [b':' | b'.', ..])
-        {
-            let suffix = suffix_length(lexer.remainder().as_bytes(), kind == SyntaxKind::RBrack);
-            lexer.bump(suffix);
-            tokens.push(SyntaxKind::ObjectSuffix, suffix);
-        }
-        if PIECES {
-            tokens.end_piece(memo, text);
-        }
-        let (blanks, begins_line) = tokens.push_blanks(lexer.remainder());
-        lexer.bump(blanks);
-        starts = PIECES && (begins_line || grammar.starts_piece(kind));
-    }
-    tokens
+/// Length of what belongs to a token and only there, `:4` or `.T`: `Pump:X4`, `%MW50[%MW5]:10`.
+#[inline]
+fn suffix_length(before: SyntaxKind, rest: &[u8]) -> usize {
+    let has_suffix = matches!(before, SyntaxKind::Ident | SyntaxKind::RBrack | SyntaxKind::Number);
+    if has_suffix && matches!(rest, [b':' | b'.', ..]) { suffix(rest, before == SyntaxKind::RBrack) } else { 0 }
 }
 
 /// Length of `:10`, `:X4`, and after an index also `.T` or `.T:8`; 0 if there is none.
-fn suffix_length(rest: &[u8], after_index: bool) -> usize {
+fn suffix(rest: &[u8], after_index: bool) -> usize {
     let mut end = 0;
     loop {
         let (first, digits_only) = match rest.get(end..) {
@@ -198,11 +168,11 @@ fn suffix_length(rest: &[u8], after_index: bool) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::syntax::parser::Token;
+    use crate::syntax::tokens::Token;
     use SyntaxKind::*;
 
     fn lex(text: &str) -> Tokens {
-        super::lex(text, Grammar::St, &mut Memo::for_text(text))
+        super::lex(text, None, &mut Memo::for_text(text))
     }
 
     fn kinds(text: &str) -> Vec<SyntaxKind> {

@@ -4,7 +4,7 @@
 //! operand, which are one token with its number (`M 0.0`, `KF +5`).
 
 use crate::syntax::SyntaxKind;
-use crate::syntax::parser::Tokens;
+use crate::syntax::tokens::Tokens;
 
 use SyntaxKind::*;
 
