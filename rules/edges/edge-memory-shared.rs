@@ -40,7 +40,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// which arms the edge anew on purpose.
 fn judge(cx: &ProgramCx<'_>, object: &Object, mut uses: Vec<GlobalUse<'_>>, sink: &mut Sink<'_, Site>) {
     let is_edge = |it: &GlobalUse<'_>| it.mode == Mode::EdgeMemory;
-    let gives = |it: &GlobalUse<'_>| (it.mode.assigns() || it.mode == Mode::Store) && it.it.constant.is_none();
+    let gives = |it: &GlobalUse<'_>| (it.mode.assigns() || it.mode == Mode::Store) && it.it.constant().is_none();
     uses.retain(|it| is_edge(it) || gives(it));
     if !uses.iter().any(is_edge) {
         return;

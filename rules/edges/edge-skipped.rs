@@ -11,7 +11,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (at, uses) in (0..).zip(&program.objects) {
         let name = uses.object.text.as_str();
         for it in uses.with_mode(|it| it == Mode::EdgeMemory) {
-            if it.it.skipped_by.is_some() || program.is_passed_by(it.unit) {
+            if it.it.skipped_by().is_some() || program.is_passed_by(it.unit) {
                 found.push((name, *it));
             }
         }
@@ -20,7 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
     }
     // What one jump or one call skips has one cause.
-    let cause = |it: &GlobalUse<'_>| (program.order[it.unit as usize], it.it.skipped_by);
+    let cause = |it: &GlobalUse<'_>| (program.order[it.unit as usize], it.it.skipped_by());
     found.sort_by_key(|(_, it)| (cause(it), it.it.anchor));
     for group in found.chunk_by(|a, b| cause(&a.1) == cause(&b.1)) {
         let (name, first) = group[0];
@@ -30,7 +30,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         };
         let others = group[1..].iter().map(|(name, it)| (it.site(), format!("that of `{name}`, too")));
         let mut finding = sink.report(first.site(), format!("{what} is not tested in every scan"));
-        if let Some(jump) = first.it.skipped_by {
+        if let Some(jump) = first.it.skipped_by() {
             finding = finding.related(Site { unit: first.unit, anchor: jump }, "this jump can skip it");
         } else if let Some((site, why)) = program.passed_by(first.unit) {
             finding = finding.related(site, why);

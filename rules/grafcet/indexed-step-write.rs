@@ -20,7 +20,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         } else {
             continue;
         };
-        for it in uses.with_mode(is_write).filter(|it| it.it.parameter.is_none()) {
+        for it in uses.with_mode(is_write).filter(|it| it.it.parameter().is_none()) {
             let text = cx.program.text_of(it);
             sink.report(it.site(), format!("`{text}` writes step bits {what}, which may only be read so"))
                 .note(format!("not writable according to {source}"));

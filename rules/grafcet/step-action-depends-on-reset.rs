@@ -19,7 +19,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let is_preliminary =
         |it: &&GlobalUse<'_>| matches!(program.entity(it.unit), Entity::Pl7 { part: Part::Preliminary, .. });
     for uses in program.objects.iter().filter(|it| it.object.class == Class::Step && it.object.is_fixed()) {
-        let resets = |it: &&GlobalUse<'_>| it.mode == Mode::Reset || it.mode.assigns() && it.it.constant == Some(0);
+        let resets = |it: &&GlobalUse<'_>| it.mode == Mode::Reset || it.mode.assigns() && it.it.constant() == Some(0);
         let mut places = uses.with_mode(Mode::writes).filter(is_preliminary).filter(resets);
         let Some(reset) = places.next() else { continue };
         for chart in program.charts() {
@@ -43,7 +43,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// The actions of steps that the same processing sets.
 fn preset<'a>(program: &ProgramIndex<'a>, chart: &Chart<'a>, reset: &GlobalUse<'_>) -> Vec<Action<'a>> {
     let steps = program.objects.iter().filter(|it| it.object.class == Class::Step && it.object.is_fixed());
-    let is_set = |it: &GlobalUse<'_>| it.unit == reset.unit && it.mode != Mode::Reset && it.it.constant != Some(0);
+    let is_set = |it: &GlobalUse<'_>| it.unit == reset.unit && it.mode != Mode::Reset && it.it.constant() != Some(0);
     let set = steps.filter(|it| it.with_mode(Mode::writes).any(is_set));
     set.filter_map(|it| chart.step_at(&it.object.footprint))
         .flat_map(|it| program.actions().of(chart, it))

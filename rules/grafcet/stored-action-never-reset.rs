@@ -41,7 +41,7 @@ impl<'a> Raised<'a> {
             let action = InAction::of(program, it);
             let stays = match it.mode {
                 Mode::Set => !it.it.own && (action.is_some() || it.it.conditional || program.is_in_event(it.unit)),
-                Mode::Assign | Mode::AssignNot if it.it.constant.is_some() => may_raise(it),
+                Mode::Assign | Mode::AssignNot if it.it.constant().is_some() => may_raise(it),
                 // Its last value stays when the step is left.
                 Mode::Assign | Mode::AssignNot => {
                     is_computed = true;

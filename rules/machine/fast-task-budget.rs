@@ -73,5 +73,5 @@ fn sets_period(uses: &ObjectUses<'_>) -> Option<Site> {
         return None;
     }
     let sets = |mode: Mode| mode.writes() && mode != Mode::Reset;
-    uses.with_mode(sets).find(|it| it.it.constant != Some(0)).map(|it| it.site())
+    uses.with_mode(sets).find(|it| it.it.constant() != Some(0)).map(|it| it.site())
 }

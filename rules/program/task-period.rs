@@ -71,7 +71,7 @@ fn written(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
             continue;
         }
         for it in uses.with_mode(|it| it == Mode::Store) {
-            let wrong = it.it.constant.filter(|&it| it != 0 && !u32::try_from(it).is_ok_and(|it| range.contains(it)));
+            let wrong = it.it.constant().filter(|&it| it != 0 && !u32::try_from(it).is_ok_and(|it| range.contains(it)));
             let Some(value) = wrong else { continue };
             let (text, first, last) = (&uses.object.text, range.first, range.last);
             let message = format!("`{text}` takes {value}, and the period of {name} is {first} to {last} ms");

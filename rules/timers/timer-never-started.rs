@@ -26,7 +26,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         drives::in_order(program, &mut uses);
         // What a call or a store does to it is not known.
         let is_open = |it: &GlobalUse<'_>| {
-            it.it.parameter.is_some() || matches!(it.mode, Mode::InOut | Mode::Output | Mode::Drive(Pin::Whole))
+            it.it.parameter().is_some() || matches!(it.mode, Mode::InOut | Mode::Output | Mode::Drive(Pin::Whole))
         };
         let is_open = uses.iter().any(is_open);
         let area = &items[0].object.footprint.area;

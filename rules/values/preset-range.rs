@@ -11,7 +11,7 @@ use crate::model::unit::{Mode, Pin};
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for object in &cx.program.objects {
         for it in object.with_mode(|it| matches!(it, Mode::Store | Mode::Drive(Pin::Preset))) {
-            let Some(value) = it.it.constant else { continue };
+            let Some(value) = it.it.constant() else { continue };
             let units = cx.program.units.get(it.unit as usize);
             let Some(written) = units.and_then(|unit| unit.objects.get(it.it.object as usize)) else { continue };
             let wrong = match it.mode {

@@ -42,7 +42,7 @@ fn lone_assignment<'a>(cx: &ProgramCx<'_>, uses: &ObjectUses<'a>) -> Option<(u32
     // In an action of a step, the last value is kept on purpose, or G rules speak.
     let in_chart = matches!(cx.program.entity(first.unit), Entity::Pl7 { part: Part::Chart(_), .. });
     // A value that depends on the output's own is to be kept.
-    let computes = uses.with_mode(Mode::writes).any(|it| it.it.constant.is_none() && !it.it.holds);
+    let computes = uses.with_mode(Mode::writes).any(|it| it.it.constant().is_none() && !it.it.holds);
     // In ladder, what a jump leads past shows.
     let language = cx.program.units[first.unit as usize].language;
     let is_text = matches!(language, Language::Awl(_) | Language::Step5(_) | Language::Pl7Il | Language::Pl7St);

@@ -24,7 +24,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let stored = |it: &GlobalUse<'_>| is_stored(it.mode);
         let mut writes: Vec<GlobalUse<'_>> = uses.with_mode(is_stored).copied().collect();
         // A constant, and a circuit that holds itself, store the bit as set and reset do.
-        writes.extend(uses.with_mode(Mode::assigns).filter(|it| it.it.constant.is_none() && !it.it.holds));
+        writes.extend(uses.with_mode(Mode::assigns).filter(|it| it.it.constant().is_none() && !it.it.holds));
         writes.extend(drives::covering(cx.program, uses, cx.neighbours(at)));
         drives::in_order(cx.program, &mut writes);
         // A scratch value that each unit assigns before it sets or resets it.

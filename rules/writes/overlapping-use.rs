@@ -86,7 +86,7 @@ fn part_disturbs(cx: &ProgramCx<'_>, whole: &ObjectUses<'_>, part: &ObjectUses<'
     // memory is E009's.
     let outputs = whole.object.class == Class::Output && part.object.ty == Type::Bool;
     let edge_memory = || part.uses.iter().any(|it| it.mode == Mode::EdgeMemory);
-    let gives = |it: &GlobalUse<'_>| it.mode == Mode::Store && it.it.constant != Some(0);
+    let gives = |it: &GlobalUse<'_>| it.mode == Mode::Store && it.it.constant() != Some(0);
     let candidate = whole.number && !whole.object.ty.is_table() && !outputs;
     candidate && running(cx, whole).any(gives) && changes(cx, part) && !edge_memory()
 }
@@ -99,5 +99,5 @@ fn running<'p, 'a>(cx: &'p ProgramCx<'_>, uses: &'p ObjectUses<'a>) -> impl Iter
 
 /// Whether something gives the object a value other than 0.
 fn changes(cx: &ProgramCx<'_>, uses: &ObjectUses<'_>) -> bool {
-    running(cx, uses).any(|it| it.mode.writes() && it.mode != Mode::InOut && it.it.constant != Some(0))
+    running(cx, uses).any(|it| it.mode.writes() && it.mode != Mode::InOut && it.it.constant() != Some(0))
 }

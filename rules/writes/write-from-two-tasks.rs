@@ -76,7 +76,7 @@ fn gives(it: &GlobalUse<'_>) -> bool {
 /// Whether one of two writes undoes the other. A constant hands something over, too, unless one of the two is written in each
 /// scan, or the other is made of the object's own value, so that a constant which comes in between is lost.
 fn disturb(program: &ProgramIndex<'_>, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
-    let is_constant = |it: &GlobalUse<'_>| it.it.constant.is_some() && !is_drive(it.mode);
+    let is_constant = |it: &GlobalUse<'_>| it.it.constant().is_some() && !is_drive(it.mode);
     let in_each_scan =
         |it: &GlobalUse<'_>| !it.it.conditional && program.sure.get(it.unit as usize).is_some_and(|it| *it);
     match (is_constant(a), is_constant(b)) {

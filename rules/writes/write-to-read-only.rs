@@ -10,7 +10,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let is_write = |mode: Mode| mode.writes() && mode != Mode::InOut;
     for uses in &cx.program.objects {
         let Some((what, source)) = forbidden(uses.object) else { continue };
-        for it in uses.with_mode(is_write).filter(|it| it.it.parameter.is_none()) {
+        for it in uses.with_mode(is_write).filter(|it| it.it.parameter().is_none()) {
             sink.report(it.site(), format!("`{}` is {what}, which a program cannot write", cx.program.text_of(it)))
                 .note(format!("not writable according to {source}"));
         }

@@ -13,7 +13,7 @@ pub fn covering<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours
     for whole in neighbours.iter().filter_map(|&it| program.objects.get(it as usize)) {
         let wide = whole.object.class == Class::Output || matches!(whole.object.ty, Type::BitTable(_));
         if wide && whole.object.ty != Type::Bool && whole.object.footprint.contains(&bit.object.footprint) {
-            found.extend(whole.with_mode(|it| it == Mode::Store).filter(|it| it.it.constant.is_none()).copied());
+            found.extend(whole.with_mode(|it| it == Mode::Store).filter(|it| it.it.constant().is_none()).copied());
         }
     }
     found
@@ -25,7 +25,7 @@ pub fn covering<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours
 pub fn is_of_cleared_table(program: &ProgramIndex<'_>, place: &GlobalUse<'_>, neighbours: &[u32]) -> bool {
     let tables = neighbours.iter().filter_map(|&it| program.objects.get(it as usize));
     let clears = |it: &GlobalUse<'_>| {
-        it.unit == place.unit && it.it.anchor < place.it.anchor && it.it.constant == Some(0) && !it.it.conditional
+        it.unit == place.unit && it.it.anchor < place.it.anchor && it.it.constant() == Some(0) && !it.it.conditional
     };
     tables.filter(|it| it.object.ty != Type::Bool).any(|it| it.with_mode(|it| it == Mode::Store).any(clears))
 }
@@ -63,7 +63,7 @@ impl ReadingCalls {
 /// Whether one of two assignments undoes the other. Two constants under a condition store a value, as set and reset do,
 /// and equal constants are one value.
 pub fn override_each_other(a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
-    match (a.it.constant, b.it.constant) {
+    match (a.it.constant(), b.it.constant()) {
         (Some(x), Some(y)) => x != y && !a.it.conditional && !b.it.conditional,
         _ => true,
     }
@@ -72,7 +72,7 @@ pub fn override_each_other(a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
 /// Whether both are actual parameters of calls of one instance of a DFB. That it is called twice is a mistake of its own.
 pub fn of_one_instance(program: &ProgramIndex<'_>, a: &GlobalUse<'_>, b: &GlobalUse<'_>) -> bool {
     let instance = |it: &GlobalUse<'_>| {
-        let (call, _) = it.it.parameter.as_ref()?;
+        let (call, _) = it.it.parameter()?;
         match &program.units.get(it.unit as usize)?.calls.get(*call as usize)?.callee {
             Callee::Instance(name) => Some(name.clone()),
             _ => None,

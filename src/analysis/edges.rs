@@ -63,7 +63,7 @@ pub fn skipped<'a>(program: &ProgramIndex<'a>, bit: &ObjectUses<'a>, neighbours:
     let goes_on = |edge: &&GlobalUse<'a>| {
         let beside = writes.iter().any(|it| it.unit == edge.unit || program.run_together(it.unit, edge.unit));
         let together = writes.iter().any(|it| it.unit == edge.unit && it.it.path == edge.it.path);
-        !together && (edge.it.skipped_by.is_some() || (!beside && program.is_passed_by(edge.unit)))
+        !together && (edge.it.skipped_by().is_some() || (!beside && program.is_passed_by(edge.unit)))
     };
     bit.with_mode(Mode::is_edge).filter(goes_on).copied().collect()
 }

@@ -44,12 +44,8 @@ pub struct Use {
     pub conditional: bool,
     /// Number of the condition under which control reaches the place: equal numbers in a unit are equal conditions.
     pub path: u32,
-    /// For an edge test or an input of a block: place of the jump that can skip it.
-    pub skipped_by: Option<u32>,
     /// For an edge test: a run of the unit may make it without the unit's own write of the object.
     pub stale: bool,
-    /// For writes, and for a block that takes its preset: the constant that is written, when it is one.
-    pub constant: Option<i64>,
     /// For a set: it waits for nothing but the bit's own 0, so that the bit is 1 for ever. For other writes: the object
     /// takes its own value, so that nothing changes.
     pub own: bool,
@@ -59,8 +55,38 @@ pub struct Use {
     pub of_bits: bool,
     /// Network or sentence.
     pub network: u32,
+    /// Uses are what most of the memory of a program goes to, and few have any of it.
+    detail: Option<Box<Detail>>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Detail {
+    skipped_by: Option<u32>,
+    constant: Option<i64>,
+    parameter: Option<(u32, Formal)>,
+}
+
+impl Detail {
+    fn boxed(self) -> Option<Box<Self>> {
+        (self != Self::default()).then(|| Box::new(self))
+    }
+}
+
+impl Use {
+    /// For an edge test or an input of a block: place of the jump that can skip it.
+    pub fn skipped_by(&self) -> Option<u32> {
+        self.detail.as_ref()?.skipped_by
+    }
+
+    /// For writes, and for a block that takes its preset: the constant that is written, when it is one.
+    pub fn constant(&self) -> Option<i64> {
+        self.detail.as_ref()?.constant
+    }
+
     /// For an actual parameter: the call, an index into the unit's calls, and the formal parameter.
-    pub parameter: Option<(u32, Formal)>,
+    pub fn parameter(&self) -> Option<&(u32, Formal)> {
+        self.detail.as_ref()?.parameter.as_ref()
+    }
 }
 
 /// An object of the unit with how its value is used.
@@ -268,6 +294,10 @@ impl UnitFacts {
                 });
                 let own = when.is_some_and(|it| is_own_absence(model, it, access.object))
                     || value.is_some_and(|it| is_own_value(model, it, access.object));
+                let skipped_by = gaps::skip(&skips, access)
+                    .filter(|_| access.mode.is_edge() || matches!(access.mode, Mode::EdgeMemory | Mode::Drive(_)))
+                    .and_then(|it| Some(model.jumps.get(it as usize)?.anchor));
+                let parameter = access.parameter.clone().zip(called).map(|(formal, call)| (call, formal));
                 Use {
                     object: access.object.0,
                     mode: access.mode,
@@ -278,17 +308,13 @@ impl UnitFacts {
                         || by_call
                         || when.is_some_and(|it| it != Exprs::TRUE),
                     path: access.path.0,
-                    skipped_by: gaps::skip(&skips, access)
-                        .filter(|_| access.mode.is_edge() || matches!(access.mode, Mode::EdgeMemory | Mode::Drive(_)))
-                        .and_then(|it| Some(model.jumps.get(it as usize)?.anchor)),
                     stale: access.mode.is_edge()
                         && writes.get(&access.object.0).is_some_and(|it| it.leave_out(space, access.path, &[])),
-                    constant,
                     own,
                     holds: value.is_some_and(|it| depends_on(&model.exprs, it, access.object)),
                     of_bits: value.is_some_and(|it| is_of_bits(model, it)),
                     network: statement.map_or(0, |it| it.network),
-                    parameter: access.parameter.clone().zip(called).map(|(formal, call)| (call, formal)),
+                    detail: Detail { skipped_by, constant, parameter }.boxed(),
                 }
             })
             .collect();
@@ -386,14 +412,12 @@ impl UnitFacts {
             group: u32::MAX,
             conditional: false,
             path: Exprs::TRUE.0,
-            skipped_by: None,
             stale: false,
-            constant: None,
             own: false,
             holds: false,
             of_bits: false,
             network: 0,
-            parameter: None,
+            detail: None,
         };
         self.uses.insert(0, read);
     }

@@ -89,11 +89,11 @@ impl Held {
         let missed = outputs.filter_map(|(it, &id)| Some(((1, it.missed?), id)));
         let is_passed_by = skeleton.is_passed_by(unit);
         let is_edge = |it: &&Use| it.mode.is_edge() || it.mode == Mode::EdgeMemory;
-        let is_skipped = |it: &&Use| it.skipped_by.is_some() || is_passed_by;
+        let is_skipped = |it: &&Use| it.skipped_by().is_some() || is_passed_by;
         let skipped = facts.uses.iter().filter(is_edge).filter(is_skipped);
         let mut causes: Vec<((u8, u32), u32)> = facts.uses.iter().map(|it| ((0, it.anchor), id(it))).collect();
         causes.extend(missed);
-        causes.extend(skipped.map(|it| ((2, it.skipped_by.unwrap_or(NONE)), id(it))));
+        causes.extend(skipped.map(|it| ((2, it.skipped_by().unwrap_or(NONE)), id(it))));
         causes.retain(|it| it.1 != NONE);
         causes.sort_unstable();
         causes.dedup();

@@ -160,7 +160,7 @@ impl<'a> InAction<'a> {
 
 /// Whether a write can make a bit 1, as far as the value is known.
 pub fn may_raise(it: &GlobalUse<'_>) -> bool {
-    match (it.mode, it.it.constant) {
+    match (it.mode, it.it.constant()) {
         (Mode::Reset, _) => false,
         (Mode::Assign, Some(value)) => value != 0,
         (Mode::AssignNot, Some(value)) => value == 0,
@@ -175,7 +175,7 @@ pub fn is_reset(it: &GlobalUse<'_>) -> bool {
 
 /// Whether a write gives a bit a value of its own, which it then keeps: set and reset, or a constant.
 pub fn is_stored(it: &GlobalUse<'_>) -> bool {
-    matches!(it.mode, Mode::Set | Mode::Reset) || it.it.constant.is_some()
+    matches!(it.mode, Mode::Set | Mode::Reset) || it.it.constant().is_some()
 }
 
 /// A bit that actions of several steps raise, and nothing else of the program does.

@@ -1068,7 +1068,7 @@ fn is_complete(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -
 
 /// What is done to the object of a use: of an actual parameter, what the called block of the program does with it.
 pub(super) fn actual_mode(skeleton: &Skeleton<'_>, unit: u32, it: &Use) -> Mode {
-    let Some((call, formal)) = &it.parameter else { return it.mode };
+    let Some((call, formal)) = it.parameter() else { return it.mode };
     let Some(target) = skeleton.target_of(unit, *call) else { return it.mode };
     let facts = skeleton.units[target as usize];
     match formal {

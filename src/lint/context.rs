@@ -98,12 +98,10 @@ impl<'a> UnitCx<'a> {
             let mut parent = self.parse.syntax();
             let mut children = parent.children_with_tokens();
             loop {
-                let node = match children.next() {
+                let node = match children.next_node_or(|it| it == SyntaxKind::Comment) {
                     Some(SyntaxElement::Node(node)) => node,
-                    Some(SyntaxElement::Token(token)) => {
-                        if token.kind() == SyntaxKind::Comment {
-                            comments.push(token.text_range());
-                        }
+                    Some(SyntaxElement::Token(comment)) => {
+                        comments.push(comment.text_range());
                         continue;
                     }
                     None => match open.pop() {

@@ -329,19 +329,30 @@ impl<'t> Elements<'t> {
     /// The next that is a node: what tokens are is not looked at.
     #[inline]
     fn next_node(&mut self) -> Option<SyntaxNode<'t>> {
+        self.next_node_or(|_| false)?.into_node()
+    }
+
+    /// The next that is a node, or a token of a kind that is wanted; no kind of blanks is.
+    #[inline]
+    pub fn next_node_or(&mut self, is_wanted: impl Fn(SyntaxKind) -> bool) -> Option<SyntaxElement<'t>> {
         self.next = None;
-        let raw = self.raw.as_mut()?;
+        let stored = self.raw.as_mut()?;
         loop {
             let start = self.start;
-            match raw.next()? {
+            match stored.next()? {
                 NodeOrToken::Node(it) => {
                     self.start += it.text_len();
-                    return Some(SyntaxNode { green: Green::Node(it), start });
+                    return Some(SyntaxElement::Node(SyntaxNode { green: Green::Node(it), start }));
                 }
                 NodeOrToken::Token(green) => {
                     self.start += green.text_len();
-                    if raw::leaf(green.kind()).is_some() {
-                        return Some(SyntaxNode { green: Green::Leaf(green), start });
+                    let kind = green.kind();
+                    if raw::leaf(kind).is_some() {
+                        return Some(SyntaxElement::Node(SyntaxNode { green: Green::Leaf(green), start }));
+                    }
+                    if is_wanted(raw::token(kind)) {
+                        let part = if raw::has_spaces(kind) { Part::BeforeSpaces } else { Part::All };
+                        return Some(SyntaxElement::Token(SyntaxToken { green, start, part }));
                     }
                 }
             }

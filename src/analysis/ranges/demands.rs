@@ -224,7 +224,7 @@ fn constants(program: &ProgramIndex<'_>, uses: &ObjectUses<'_>) -> Vec<(i64, Sit
     let mut found = Vec::new();
     for it in writes {
         let is_passed_by = it.it.conditional || !program.sure.get(it.unit as usize).copied().unwrap_or(false);
-        match it.it.constant {
+        match it.it.constant() {
             Some(value) if it.mode == Mode::Store && is_passed_by => found.push((value, it.site())),
             Some(value) if it.mode == Mode::Store && found.is_empty() => found.push((value, it.site())),
             _ => return Vec::new(),

@@ -539,7 +539,7 @@ impl<'a> Runner<'_, 'a> {
                     let arguments = arguments.get_or_insert_with(|| {
                         let mut all = Arguments::default();
                         for it in &facts.uses {
-                            if let Some((call, Formal::Name(name))) = &it.parameter
+                            if let Some((call, Formal::Name(name))) = it.parameter()
                                 && let Some(&object) = ids.get(it.object as usize)
                             {
                                 all.entry(*call).or_default().push((name.to_lowercase().into(), object, it.anchor));
