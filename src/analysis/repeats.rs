@@ -4,8 +4,9 @@
 //! forms are equal one by one, and the operands of one take the place of those of the other one to one. Objects, constants,
 //! labels and the conditions under which control comes to a statement count as operands alike.
 //!
-//! Stretches of [`SHORTEST`] statements are looked up by a hash of their forms and of the order in which their operands first
-//! appear; what is found grows as far as its copies go along.
+//! Stretches of [`SHORTEST`] statements are looked up by a hash of their forms and of how far back each operand stood before;
+//! what is found grows as far as its copies go along. Operands can be renamed one to one exactly where those distances,
+//! within the stretches, are equal (B. Baker, Parameterized Duplication in Strings, 1997).
 
 use std::hash::{BuildHasher as _, Hash, Hasher as _};
 
@@ -37,10 +38,12 @@ struct Item {
 }
 
 /// What may be another thing in a copy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Operand {
     hash: u64,
     role: Role,
+    /// How many operands of the unit there are up to the last one before it that is the same; 0 for none.
+    before: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -58,6 +61,7 @@ const LARGEST: usize = 256;
 impl Forms {
     pub fn new(model: &UnitModel) -> Self {
         let mut forms = Self::default();
+        let mut last = FxHashMap::default();
         let mut labels = model.labels.iter().peekable();
         let mut accesses = model.accesses.iter().peekable();
         for (at, statement) in (0..).zip(&model.statements) {
@@ -65,7 +69,8 @@ impl Forms {
             while let Some(it) = accesses.next_if(|it| it.statement <= at) {
                 own.push(it);
             }
-            let mut form = Form { model, forms: &mut forms, hasher: FxHasher::default(), seen: FxHashMap::default() };
+            let (hasher, seen) = (FxHasher::default(), FxHashMap::default());
+            let mut form = Form { model, forms: &mut forms, last: &mut last, hasher, seen };
             while let Some(it) = labels.next_if(|it| it.statement <= at) {
                 form.operand(&it.name, Role::Own);
                 "label".hash(&mut form.hasher);
@@ -91,6 +96,8 @@ impl Forms {
 struct Form<'a> {
     model: &'a UnitModel,
     forms: &'a mut Forms,
+    /// How many operands there are up to the last one that is the same.
+    last: &'a mut FxHashMap<u64, u32>,
     hasher: FxHasher,
     /// Expressions written so far, by their number.
     seen: FxHashMap<ExprId, u32>,
@@ -99,7 +106,9 @@ struct Form<'a> {
 impl Form<'_> {
     fn operand(&mut self, it: impl Hash, role: Role) {
         let hash = FxBuildHasher.hash_one((role, it));
-        self.forms.operands.push(Operand { hash, role });
+        let count = u32::try_from(self.forms.operands.len() + 1).unwrap_or(u32::MAX);
+        let before = self.last.insert(hash, count).unwrap_or_default();
+        self.forms.operands.push(Operand { hash, role, before });
     }
 
     fn object(&mut self, id: ObjectId) {
@@ -315,14 +324,30 @@ impl<'a> All<'a> {
 
     fn operands(&self, at: usize, length: usize) -> &'a [Operand] {
         let Some(&(_, forms, item)) = self.items.get(at) else { return &[] };
-        let start = item.checked_sub(1).map_or(0, |it| forms.items[it].end);
-        let end = forms.items.get(item + length - 1).map_or(start, |it| it.end);
-        forms.operands.get(start as usize..end as usize).unwrap_or_default()
+        let end = forms.items.get(item + length - 1).map_or(0, |it| it.end as usize);
+        forms.operands.get(self.first_operand(at)..end).unwrap_or_default()
+    }
+
+    /// How many operands of the unit stand before those of a statement.
+    fn first_operand(&self, at: usize) -> usize {
+        let before = self.items.get(at).and_then(|&(_, forms, item)| forms.items.get(item.checked_sub(1)?));
+        before.map_or(0, |it| it.end as usize)
+    }
+
+    /// Of the operands of a statement of the stretch that begins at `start`, how far back each stood before in it; 0 where it
+    /// did not.
+    fn distances(&self, start: usize, at: usize, length: usize) -> impl ExactSizeIterator<Item = usize> {
+        let (start, first) = (self.first_operand(start), self.first_operand(at));
+        let distance = move |(at, it): (usize, &Operand)| {
+            let before = it.before as usize;
+            if before > start { first + at + 1 - before } else { 0 }
+        };
+        self.operands(at, length).iter().enumerate().map(distance)
     }
 
     /// The operands that copies can share.
-    fn works_on(&self, at: usize, length: usize) -> impl Iterator<Item = &'a Operand> {
-        self.operands(at, length).iter().filter(|it| it.role != Role::Own)
+    fn works_on(&self, at: usize, length: usize) -> impl Iterator<Item = u64> {
+        self.operands(at, length).iter().filter(|it| it.role != Role::Own).map(|it| it.hash)
     }
 
     fn site(&self, at: usize, length: usize) -> Option<Site> {
@@ -340,17 +365,13 @@ impl<'a> All<'a> {
         if self.unit(at) != self.unit(at + SHORTEST - 1) {
             return None;
         }
-        let mut numbers: FxHashMap<u64, usize> = FxHashMap::default();
-        for it in self.operands(at, SHORTEST) {
-            let next = numbers.len();
-            numbers.entry(it.hash).or_insert(next).hash(&mut hasher);
-        }
+        self.distances(at, at, SHORTEST).for_each(|it| it.hash(&mut hasher));
         Some(hasher.finish())
     }
 
     /// The length and the copies of the stretch at a place that save most.
     fn grow(&self, at: usize, others: &[usize], covered: &[bool], saved: usize) -> Option<(usize, Vec<usize>)> {
-        let mut alive: Vec<(usize, Renaming)> = others.iter().map(|&it| (it, Renaming::default())).collect();
+        let mut alive = others.to_vec();
         let mut linked = Linked::default();
         let mut best: Option<(usize, usize, Vec<usize>)> = None;
         for length in 1..=LONGEST {
@@ -359,49 +380,29 @@ impl<'a> All<'a> {
                 break;
             }
             let mut end = at + length;
-            alive.retain_mut(|(other, renaming)| {
-                let there = *other + length - 1;
-                let goes_on = end <= *other
-                    && self.unit(there) == self.unit(*other)
+            alive.retain(|&other| {
+                let there = other + length - 1;
+                let goes_on = end <= other
+                    && self.unit(there) == self.unit(other)
                     && covered.get(there).is_some_and(|it| !it)
                     && self.form(last).is_some_and(|it| self.form(there) == Some(it))
-                    && renaming.extend(self.operands(last, 1), self.operands(there, 1));
+                    && self.distances(at, last, 1).eq(self.distances(other, there, 1));
                 if goes_on {
-                    end = *other + length;
+                    end = other + length;
                 }
                 goes_on
             });
-            let Some((_, renaming)) = alive.first() else { break };
-            if !linked.extend(self.operands(last, 1), renaming, self.is_aside(last)) {
+            let Some(first) = alive.first() else { break };
+            let copied = self.operands(last, 1).iter().zip(self.operands(first + length - 1, 1));
+            if !linked.extend(copied, self.is_aside(last)) {
                 break;
             }
             let saves = alive.len() * linked.acting;
             if linked.acting >= SHORTEST && saves >= saved && best.as_ref().is_none_or(|it| it.0 <= saves) {
-                best = Some((saves, length, alive.iter().map(|it| it.0).collect()));
+                best = Some((saves, length, alive.clone()));
             }
         }
         best.map(|(_, length, copies)| (length, copies))
-    }
-}
-
-/// Which operand of a copy stands for which.
-#[derive(Default)]
-struct Renaming {
-    there: FxHashMap<u64, u64>,
-    here: FxHashMap<u64, u64>,
-}
-
-impl Renaming {
-    fn extend(&mut self, here: &[Operand], there: &[Operand]) -> bool {
-        here.len() == there.len()
-            && here.iter().zip(there).all(|(a, b)| {
-                *self.there.entry(a.hash).or_insert(b.hash) == b.hash
-                    && *self.here.entry(b.hash).or_insert(a.hash) == a.hash
-            })
-    }
-
-    fn is_same(&self, it: &Operand) -> bool {
-        self.there.get(&it.hash) == Some(&it.hash)
     }
 }
 
@@ -417,9 +418,10 @@ struct Linked {
 }
 
 impl Linked {
-    fn extend(&mut self, operands: &[Operand], renaming: &Renaming, is_aside: bool) -> bool {
-        let objects = || operands.iter().filter(|it| it.role == Role::Object);
-        self.other_values |= operands.iter().any(|it| it.role == Role::Value && !renaming.is_same(it));
+    /// By a statement with its operands, each before what stands for it in a copy.
+    fn extend<'a>(&mut self, copied: impl Iterator<Item = (&'a Operand, &'a Operand)> + Clone, is_aside: bool) -> bool {
+        let objects = || copied.clone().filter(|it| it.0.role == Role::Object).map(|(it, copy)| (it.hash, copy.hash));
+        self.other_values |= copied.clone().any(|(it, copy)| it.role == Role::Value && it.hash != copy.hash);
         if objects().next().is_none() {
             // A jump or a branch alone has nothing to bind it.
             return true;
@@ -427,13 +429,10 @@ impl Linked {
         let all_same = self.renamed.is_empty() && !self.other_values;
         let is_first = self.renamed.is_empty() && self.same.is_empty();
         let is_linked =
-            is_first || objects().any(|it| self.renamed.contains(&it.hash) || all_same && self.same.contains(&it.hash));
-        for it in objects() {
-            if renaming.is_same(it) {
-                self.same.insert(it.hash)
-            } else {
-                self.renamed.insert(it.hash)
-            };
+            is_first || objects().any(|(it, _)| self.renamed.contains(&it) || all_same && self.same.contains(&it));
+        for (it, copy) in objects() {
+            let kept = if it == copy { &mut self.same } else { &mut self.renamed };
+            kept.insert(it);
         }
         self.acting += usize::from(!is_aside);
         is_linked
@@ -442,6 +441,8 @@ impl Linked {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::analysis::facts::UnitFacts;
     use crate::model::entity::{Entity, Family};
@@ -485,5 +486,27 @@ mod tests {
         };
         assert_eq!(found(&[&calls("L 0"), &calls("L 2")]), []);
         assert_eq!(found(&[&calls("M 0"), &calls("M 2")]), [(4, 2, false)]);
+    }
+
+    proptest! {
+        /// Operands can be renamed one to one exactly where their distances are equal.
+        #[test]
+        fn distances_say_what_can_be_renamed(names in prop::collection::vec(0..4_u64, 2..24), a in 0..24_usize, b in 0..24_usize) {
+            let mut last: FxHashMap<u64, u32> = FxHashMap::default();
+            let operands: Vec<Operand> = (1..)
+                .zip(&names)
+                .map(|(count, &hash)| Operand { hash, role: Role::Object, before: last.insert(hash, count).unwrap_or(0) })
+                .collect();
+            let item = |end| Item { form: None, end, anchor: None, is_aside: false };
+            let forms = Forms { items: (1..).take(names.len()).map(item).collect(), operands };
+            let all = All { items: (0..names.len()).map(|it| (0, &forms, it)).collect() };
+            let (a, b) = (a % names.len(), b % names.len());
+            let length = names.len() - a.max(b);
+            let (mut there, mut here) = (FxHashMap::default(), FxHashMap::default());
+            let can_be_renamed = names[a..a + length].iter().zip(&names[b..b + length]).all(|(x, y)| {
+                *there.entry(x).or_insert(y) == y && *here.entry(y).or_insert(x) == x
+            });
+            prop_assert_eq!(all.distances(a, a, length).eq(all.distances(b, b, length)), can_be_renamed);
+        }
     }
 }
