@@ -40,7 +40,7 @@ impl Text {
     }
 }
 
-fn texts(bytes: usize) -> [Text; 5] {
+fn texts(bytes: usize) -> [Text; 6] {
     let detected = |text: &str| Input::from_text("bench.txt", text, Dialect::Auto).detected;
     let pl7 = Input::from_text("bench.txt", &generator::pl7(10_000, 7), Dialect::Pl7).detected;
     let text = |name, make: fn(usize, u64) -> String, seed, detected, largest| {
@@ -49,6 +49,7 @@ fn texts(bytes: usize) -> [Text; 5] {
     };
     [
         text("step7", generator::step7, 42, Detected::Step7, usize::MAX),
+        text("step5", generator::step5, 5, detected(&generator::step5(10_000, 5)), 50_000),
         text("pl7", generator::pl7, 7, pl7, 1_000_000),
         text("ladder", generator::ladder, 11, detected(&generator::ladder(10_000, 11)), 1_000_000),
         text("grafcet", generator::grafcet, 13, detected(&generator::grafcet(10_000, 13)), 20_000),
@@ -98,7 +99,8 @@ fn check(criterion: &mut Criterion) {
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     for (size, bytes) in SIZES {
         for it in texts(bytes) {
-            group.throughput(Throughput::Bytes(bytes as u64));
+            let programs = it.programs(bytes);
+            group.throughput(Throughput::Bytes(programs.iter().map(|it| it.len() as u64).sum()));
             group.bench_function(BenchmarkId::new(it.name, size), |bencher| {
                 let input = |(number, text): (usize, String)| {
                     let mut input = Input::from_text(&format!("{number}/bench.txt"), "", Dialect::Step7);
@@ -106,7 +108,7 @@ fn check(criterion: &mut Criterion) {
                     input.detected = it.detected;
                     input
                 };
-                let inputs: Vec<Input> = it.programs(bytes).into_iter().enumerate().map(input).collect();
+                let inputs: Vec<Input> = programs.iter().cloned().enumerate().map(input).collect();
                 bencher.iter_batched(
                     || inputs.clone(),
                     |inputs| pool.install(|| db::check(inputs, Settings::default()).diagnostics.len()),

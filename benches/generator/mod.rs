@@ -2,10 +2,12 @@
 //! mistake in some hundred networks. The same size and seed always give the same text.
 
 mod graphic;
+mod step5;
 
 use std::fmt::Write as _;
 
 pub use graphic::{grafcet, ladder, pl7_2};
+pub use step5::step5;
 
 /// A small generator of pseudo-random numbers (xorshift): reproducible, and fast enough not to be measured.
 pub struct Random(u64);

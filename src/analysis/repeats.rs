@@ -42,8 +42,8 @@ struct Item {
 struct Operand {
     hash: u64,
     role: Role,
-    /// How many operands of the unit there are up to the last one before it that is the same; 0 for none.
-    before: u32,
+    /// How many operands of the unit back the last one is that is the same; more than there are where none is.
+    back: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -96,7 +96,7 @@ impl Forms {
 struct Form<'a> {
     model: &'a UnitModel,
     forms: &'a mut Forms,
-    /// How many operands there are up to the last one that is the same.
+    /// How many operands stand before the last one that is the same.
     last: &'a mut FxHashMap<u64, u32>,
     hasher: FxHasher,
     /// Expressions written so far, by their number.
@@ -106,9 +106,9 @@ struct Form<'a> {
 impl Form<'_> {
     fn operand(&mut self, it: impl Hash, role: Role) {
         let hash = FxBuildHasher.hash_one((role, it));
-        let count = u32::try_from(self.forms.operands.len() + 1).unwrap_or(u32::MAX);
-        let before = self.last.insert(hash, count).unwrap_or_default();
-        self.forms.operands.push(Operand { hash, role, before });
+        let count = u32::try_from(self.forms.operands.len()).unwrap_or(u32::MAX);
+        let back = self.last.insert(hash, count).map_or(u32::MAX, |it| count - it);
+        self.forms.operands.push(Operand { hash, role, back });
     }
 
     fn object(&mut self, id: ObjectId) {
@@ -255,7 +255,7 @@ const LONGEST: usize = 2000;
 
 /// What stands several times in a program, if its copies are `saved` statements more than one stretch of it.
 pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
-    let all = All::new(program);
+    let all = All::new((0..).zip(&program.units).filter_map(|(unit, it)| Some((unit, it.forms.as_deref()?))));
     let mut copies: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
     let mut keys = Vec::with_capacity(all.items.len());
     for at in 0..all.items.len() {
@@ -298,20 +298,27 @@ pub fn repeats(program: &ProgramIndex<'_>, saved: usize) -> Vec<Repeat> {
 
 /// The statements of all units, one after the other.
 struct All<'a> {
-    /// Unit, its forms, and the number of the item in it.
-    items: Vec<(u32, &'a Forms, usize)>,
+    /// Unit and statement.
+    items: Vec<(u32, &'a Item)>,
+    /// Where the operands of each end; they begin where those of the one before end.
+    ends: Vec<usize>,
+    operands: Vec<Operand>,
 }
 
 impl<'a> All<'a> {
-    fn new(program: &ProgramIndex<'a>) -> Self {
-        let all = (0..).zip(&program.units).filter_map(|(unit, it)| Some((unit, it.forms.as_deref()?)));
-        let items = all.flat_map(|(unit, it)| (0..it.items.len()).map(move |at| (unit, it, at))).collect();
-        Self { items }
+    fn new(units: impl Iterator<Item = (u32, &'a Forms)>) -> Self {
+        let mut all = Self { items: Vec::new(), ends: Vec::new(), operands: Vec::new() };
+        for (unit, forms) in units {
+            let before = all.operands.len();
+            all.items.extend(forms.items.iter().map(|it| (unit, it)));
+            all.ends.extend(forms.items.iter().map(|it| before + it.end as usize));
+            all.operands.extend(&forms.operands);
+        }
+        all
     }
 
     fn form(&self, at: usize) -> Option<u64> {
-        let (_, forms, item) = *self.items.get(at)?;
-        forms.items[item].form
+        self.items.get(at)?.1.form
     }
 
     fn unit(&self, at: usize) -> Option<u32> {
@@ -319,30 +326,25 @@ impl<'a> All<'a> {
     }
 
     fn is_aside(&self, at: usize) -> bool {
-        self.items.get(at).is_some_and(|&(_, forms, item)| forms.items[item].is_aside)
+        self.items.get(at).is_some_and(|it| it.1.is_aside)
     }
 
-    fn operands(&self, at: usize, length: usize) -> &'a [Operand] {
-        let Some(&(_, forms, item)) = self.items.get(at) else { return &[] };
-        let end = forms.items.get(item + length - 1).map_or(0, |it| it.end as usize);
-        forms.operands.get(self.first_operand(at)..end).unwrap_or_default()
+    fn operands(&self, at: usize, length: usize) -> &[Operand] {
+        let end = self.ends.get(at + length - 1).copied().unwrap_or_default();
+        self.operands.get(self.first_operand(at)..end).unwrap_or_default()
     }
 
-    /// How many operands of the unit stand before those of a statement.
     fn first_operand(&self, at: usize) -> usize {
-        let before = self.items.get(at).and_then(|&(_, forms, item)| forms.items.get(item.checked_sub(1)?));
-        before.map_or(0, |it| it.end as usize)
+        at.checked_sub(1).and_then(|it| self.ends.get(it)).copied().unwrap_or_default()
     }
 
     /// Of the operands of a statement of the stretch that begins at `start`, how far back each stood before in it; 0 where it
     /// did not.
-    fn distances(&self, start: usize, at: usize, length: usize) -> impl ExactSizeIterator<Item = usize> {
-        let (start, first) = (self.first_operand(start), self.first_operand(at));
-        let distance = move |(at, it): (usize, &Operand)| {
-            let before = it.before as usize;
-            if before > start { first + at + 1 - before } else { 0 }
-        };
-        self.operands(at, length).iter().enumerate().map(distance)
+    #[inline]
+    fn distances(&self, start: usize, at: usize, length: usize) -> impl Iterator<Item = u32> {
+        // As many as the unit has, which is below 4 GiB.
+        let from = (self.first_operand(at) - self.first_operand(start)) as u32;
+        self.operands(at, length).iter().zip(from..).map(|(it, at)| if it.back > at { 0 } else { it.back })
     }
 
     /// The operands that copies can share.
@@ -351,9 +353,8 @@ impl<'a> All<'a> {
     }
 
     fn site(&self, at: usize, length: usize) -> Option<Site> {
-        let &(unit, forms, item) = self.items.get(at)?;
-        let anchor = forms.items.get(item..item + length)?.iter().find_map(|it| it.anchor)?;
-        Some(Site { unit, anchor })
+        let statements = self.items.get(at..at + length)?;
+        statements.iter().find_map(|&(unit, it)| Some(Site { unit, anchor: it.anchor? }))
     }
 
     /// Equal for stretches of the shortest length that are copies.
@@ -393,7 +394,8 @@ impl<'a> All<'a> {
                 goes_on
             });
             let Some(first) = alive.first() else { break };
-            let copied = self.operands(last, 1).iter().zip(self.operands(first + length - 1, 1));
+            let copies = self.operands(first + length - 1, 1).iter();
+            let copied = self.operands(last, 1).iter().zip(copies);
             if !linked.extend(copied, self.is_aside(last)) {
                 break;
             }
@@ -495,11 +497,14 @@ mod tests {
             let mut last: FxHashMap<u64, u32> = FxHashMap::default();
             let operands: Vec<Operand> = (1..)
                 .zip(&names)
-                .map(|(count, &hash)| Operand { hash, role: Role::Object, before: last.insert(hash, count).unwrap_or(0) })
+                .map(|(count, &hash)| {
+                    let back = last.insert(hash, count).map_or(u32::MAX, |it| count - it);
+                    Operand { hash, role: Role::Object, back }
+                })
                 .collect();
             let item = |end| Item { form: None, end, anchor: None, is_aside: false };
             let forms = Forms { items: (1..).take(names.len()).map(item).collect(), operands };
-            let all = All { items: (0..names.len()).map(|it| (0, &forms, it)).collect() };
+            let all = All::new([(0, &forms)].into_iter());
             let (a, b) = (a % names.len(), b % names.len());
             let length = names.len() - a.max(b);
             let (mut there, mut here) = (FxHashMap::default(), FxHashMap::default());
