@@ -572,6 +572,9 @@ fn skeleton<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Arc<UnitFacts>]) 
     if program.files(db).iter().any(|it| partly_read.iter().any(|folder| folder == folder_of(it.path(db)))) {
         skeleton.leave_incomplete();
     }
+    if program.family(db) == Family::Step7 {
+        skeleton.know_layouts(declarations(db, program).layouts().clone());
+    }
     skeleton
 }
 

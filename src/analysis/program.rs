@@ -287,7 +287,7 @@ pub struct Skeleton<'a> {
     names: FxHashMap<UnitName, u32>,
     charts: OnceCell<Vec<Chart<'a>>>,
     actions: OnceCell<Actions<'a>>,
-    layouts: OnceCell<Layouts>,
+    layouts: OnceCell<Arc<Layouts>>,
 }
 
 /// Objects that several units can share, by footprint. They are collected when they are first asked for.
@@ -576,7 +576,12 @@ impl<'a> Skeleton<'a> {
 
     /// Where the fields of the blocks of STEP 7 lie.
     pub fn layouts(&self) -> &Layouts {
-        self.layouts.get_or_init(|| fields::layouts(self.units.iter().copied()))
+        self.layouts.get_or_init(|| Arc::new(fields::layouts(self.units.iter().copied())))
+    }
+
+    /// Takes the layouts of its units where they are made already.
+    pub(crate) fn know_layouts(&self, layouts: Arc<Layouts>) {
+        let _ = self.layouts.set(layouts);
     }
 
     /// Where the field at a place of a block is declared: in the block, or in the type that it goes by.
