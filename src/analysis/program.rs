@@ -280,7 +280,7 @@ pub struct Skeleton<'a> {
     /// Rank of each unit in the order of execution.
     pub order: Vec<u32>,
     /// Whether the program has a cyclic entry point and every block that it calls: only then does the absence of a
-    /// write, a read or a call say something.
+    /// write, a read or a call say something. A rule that judges an object asks for it by [`ProgramIndex::unseen`].
     pub complete: bool,
     /// Some of the program was not read or not understood.
     pub partial: bool,
