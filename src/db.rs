@@ -967,6 +967,11 @@ impl RootDatabase {
         let spans = known.map(|it| (hint, it.into()));
         file.set_content(self).to(Content { text, spans });
     }
+
+    /// Does what the next edit would have to do first, once findings are told.
+    pub fn get_ready(&self) {
+        self.memory.get_ready();
+    }
 }
 
 #[salsa::db]

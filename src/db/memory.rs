@@ -110,6 +110,14 @@ impl Memory {
         self.states.lock().unwrap_or_else(PoisonError::into_inner).clear();
     }
 
+    /// Gets ready for the next edit, as far as that can be done before it comes.
+    pub(super) fn get_ready(&self) {
+        let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner);
+        for ((_, family), states) in states.iter_mut().filter(|it| keeps(it.0.1)) {
+            states.iter_mut().for_each(|it| it.get_ready(*family));
+        }
+    }
+
     /// Starts from the state that is most like the program now.
     pub(super) fn step(&self, key: Key, target: Target, facts: &[Arc<UnitFacts>], program: &ProgramIndex<'_>) -> Step {
         let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner).remove(&key).unwrap_or_default();
