@@ -17,7 +17,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
-use salsa::Setter as _;
+use salsa::{Durability, Setter as _};
 use smol_str::SmolStr;
 
 use crate::analysis::Site;
@@ -572,6 +572,9 @@ fn skeleton<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Arc<UnitFacts>]) 
     if program.files(db).iter().any(|it| partly_read.iter().any(|folder| folder == folder_of(it.path(db)))) {
         skeleton.leave_incomplete();
     }
+    if program.family(db) == Family::Step7 {
+        skeleton.know_layouts(declarations(db, program).layouts().clone());
+    }
     skeleton
 }
 
@@ -878,15 +881,17 @@ impl RootDatabase {
         });
         let mut db = Self { project: None, memory: Arc::default(), storage: salsa::Storage::new(log) };
         let source = settings.source();
-        let configuration = SourceFile::new(&db, source.path.clone(), source.text.clone().into(), Detected::NotPlc);
-        db.project = Some(Project::new(&db, Vec::new(), Vec::new(), settings, configuration));
+        let (path, text) = (source.path.clone(), source.text.clone());
+        let configuration = SourceFile::builder(path, text.into(), Detected::NotPlc);
+        let configuration = configuration.durability(Durability::HIGH).new(&db);
+        let project = Project::builder(Vec::new(), Vec::new(), settings, configuration);
+        db.project = Some(project.durability(Durability::HIGH).new(&db));
         db
     }
 
     /// Adds files, in the order given.
     pub fn set_files(&mut self, inputs: impl IntoIterator<Item = Input>) -> Vec<SourceFile> {
-        let files: Vec<SourceFile> =
-            inputs.into_iter().map(|it| SourceFile::new(self, it.path, it.source.text.into(), it.detected)).collect();
+        let files: Vec<SourceFile> = inputs.into_iter().map(|it| self.add_file(it)).collect();
         self.memory.forget();
         self.project().set_files(self).to(files.clone());
         files
@@ -894,7 +899,14 @@ impl RootDatabase {
 
     /// Adds a file that is no part of the project yet. It stays until the database goes.
     pub fn add_file(&mut self, input: Input) -> SourceFile {
-        SourceFile::new(self, input.path, input.source.text.into(), input.detected)
+        SourceFile::builder(input.path, input.source.text.into(), input.detected).durability(Durability::HIGH).new(self)
+    }
+
+    /// Says that the text of a file will change often: what hangs on other files alone is not looked at then. This is an
+    /// edit of the file itself.
+    pub fn set_edited(&mut self, file: SourceFile) {
+        let content = file.content(self).clone();
+        file.set_content(self).with_durability(Durability::LOW).to(content);
     }
 
     /// Says which files are the project; they come in the order of their paths.
@@ -954,6 +966,11 @@ impl RootDatabase {
         let known = split::resplit(old, spans(self, file), &text, file.detected(self), &hint);
         let spans = known.map(|it| (hint, it.into()));
         file.set_content(self).to(Content { text, spans });
+    }
+
+    /// Does what the next edit would have to do first, once findings are told.
+    pub fn get_ready(&self) {
+        self.memory.get_ready();
     }
 }
 

@@ -47,7 +47,7 @@ fn found(db: &RootDatabase, files: &[SourceFile]) -> Vec<String> {
 fn edited(text: &str, numbers: &mut Numbers) -> String {
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
     let line = numbers.below(lines.len());
-    match numbers.below(6) {
+    match numbers.below(7) {
         // Another number: most are addresses.
         0..=2 => {
             let digits: Vec<usize> =
@@ -61,6 +61,13 @@ fn edited(text: &str, numbers: &mut Numbers) -> String {
             let copied = lines[line];
             lines.insert(numbers.below(lines.len() + 1), copied);
             lines.concat()
+        }
+        // A character that mostly breaks a statement, or the heading of a unit.
+        5 => {
+            let places: Vec<usize> = text.char_indices().map(|it| it.0).collect();
+            let at = places.get(numbers.below(places.len())).copied().unwrap_or_default();
+            let character = ["(", ";", "N", "=", " "][numbers.below(5)];
+            format!("{}{character}{}", &text[..at], &text[at..])
         }
         _ => {
             let mut lines = lines;
@@ -131,6 +138,32 @@ fn what_moves_steps_is_felt_elsewhere() {
     assert!(!moved("SET %M2"));
     assert!(!moved("RESET %X1"));
     assert!(moved("SET %X1"));
+}
+
+/// What is missing is missing in a whole program alone, and a statement that is not understood leaves none whole.
+#[test]
+fn a_mistake_elsewhere_hides_what_is_missing() {
+    let block = |number: u32, code: &str| format!("FUNCTION FC {number} : VOID\nBEGIN\n{code}\nEND_FUNCTION\n");
+    let main = "ORGANIZATION_BLOCK OB 1\nBEGIN\nCALL FC 1;\nCALL FC 2;\nEND_ORGANIZATION_BLOCK\n";
+    let uses = block(1, "U M 1.0;\n= A 0.0;\nU E 0.0;\nS M 2.0;\nU M 2.0;\n= A 0.1;\nU T 5;\n= A 0.2;");
+    let text = |code: &str| format!("{main}{uses}{}", block(2, code));
+    let whole = Settings::default();
+    let input = |text: &str| db::Input::from_text("p/a.awl", text, Dialect::Step7);
+    let (mut db, files) = open(vec![input(&text("U E 1.0;\n= A 1.0;"))], whole.clone());
+    let missing = |found: &[String]| -> Vec<&str> {
+        ["O007", "W003", "C005"].into_iter().filter(|code| found.iter().any(|it| it.contains(code))).collect()
+    };
+    let all = vec!["O007", "W003", "C005"];
+    let (right, wrong) = ("U E 1.0;\n= A 1.0;", "U E 1.0;\n= A (1.0;");
+    let texts = [(right, &all), (wrong, &vec![]), ("U E 1.1;\n= A 1.0;", &all), (wrong, &vec![]), (right, &all)];
+    for (code, expected) in texts {
+        let text = text(code);
+        db.set_text(files[0], text.as_str());
+        let found = found(&db, &files);
+        assert_eq!(missing(&found), *expected, "{code}");
+        let (fresh, of_fresh) = open(vec![input(&text)], whole.clone());
+        assert_eq!(found, self::found(&fresh, &of_fresh), "{code}");
+    }
 }
 
 fn corpus(folder: &str) -> Vec<PathBuf> {

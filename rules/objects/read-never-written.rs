@@ -8,9 +8,6 @@ use crate::model::unit::Mode;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    if !program.complete {
-        return;
-    }
     let configured = Configured::new(cx);
     // A place computed at run time, or a symbol that nothing resolves, may be the missing use.
     let given = bytes_given(cx);
@@ -19,6 +16,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let (uses, unseen) = (&program.objects[it as usize], program.unseen(&program.objects[it as usize]));
         !configured.writes(uses)
             && !given.iter().any(|byte| covers(*byte, uses))
+            && unseen.is_complete()
             && !unseen.has_unresolved(Mode::writes)
             && !unseen.is_written()
     });
@@ -35,7 +33,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut unread = one_sided(cx, is_given, |it| it.is_read() || configured.reads(it));
     unread.retain(|&it| {
         let unseen = program.unseen(&program.objects[it as usize]);
-        !unseen.has_unresolved(Mode::reads) && !unseen.is_read()
+        unseen.is_complete() && !unseen.has_unresolved(Mode::reads) && !unseen.is_read()
     });
     for group in unread.chunk_by(|&a, &b| same_byte(cx, a, b)) {
         report(cx, group, "written", "read", sink)

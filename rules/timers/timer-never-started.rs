@@ -10,10 +10,6 @@ use crate::model::unit::{Mode, Pin};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let program = cx.program;
-    // What is not there can only be missed in a whole program.
-    if !program.complete {
-        return;
-    }
     // The items of one block stand together: objects are in the order of their addresses.
     let same = |a: &ObjectUses<'_>, b: &ObjectUses<'_>| match &a.object.footprint.area {
         Area::Block(..) => a.object.footprint.area == b.object.footprint.area,
@@ -39,13 +35,16 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let name = items[0].object.text.split(['.', ',']).next().unwrap_or_default();
         match (drive, read) {
             _ if is_open => {}
-            (None, Some(read)) if !unseen.is_written() => {
+            // What is not there can only be missed in a whole program.
+            (None, Some(read)) if unseen.is_complete() && !unseen.is_written() => {
                 let resets = uses.iter().filter(|it| matches!(it.mode, Mode::Drive(_)));
                 sink.report(read.site(), format!("`{name}` is read, and nothing {kind}"))
                     .related_all(resets.map(|it| (it.site(), "only this is done with it".to_owned())));
             }
             // The outputs of a drum are set when the application is configured, and a text block sends.
-            (Some(drive), None) if !matches!(area, Area::Block("DR" | "D" | "TXT", _)) && !unseen.is_read() => {
+            (Some(drive), None)
+                if !matches!(area, Area::Block("DR" | "D" | "TXT", _)) && unseen.is_complete() && !unseen.is_read() =>
+            {
                 sink.report(drive.site(), format!("`{name}` is driven, and nothing reads it"))
                     .severity(Severity::Advice)
                     .note("this assumes that no operator panel or other station reads it");

@@ -5,6 +5,7 @@
 //! [`ProgramIndex`](super::program::ProgramIndex).
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -49,14 +50,19 @@ impl Declaration {
 /// The declarations of all units of a program.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Declarations {
-    layouts: Layouts,
+    layouts: Arc<Layouts>,
     instances: Instances,
 }
 
 impl Declarations {
     pub fn new<'a>(units: impl Iterator<Item = &'a Declaration> + Clone) -> Self {
         let blocks = units.clone().filter_map(|it| Some((it.name.as_ref()?, it.declared.as_deref()?)));
-        Self { layouts: Layouts::new(blocks), instances: Instances::new(units) }
+        Self { layouts: Arc::new(Layouts::new(blocks)), instances: Instances::new(units) }
+    }
+
+    /// What [`layouts`] makes of the facts of these units.
+    pub fn layouts(&self) -> &Arc<Layouts> {
+        &self.layouts
     }
 
     /// The facts of a unit, symbols resolved, with the places of the fields that they name.

@@ -442,7 +442,9 @@ fn is_driven_by_others(program: &ProgramIndex<'_>, uses: &ObjectUses<'_>, neighb
         Class::Output => neighbour_is_written(),
         // What nothing reads at all is another matter.
         _ => {
-            program.complete && !uses.is_read() && !neighbours.iter().any(|&it| program.objects[it as usize].is_read())
+            !uses.is_read()
+                && !neighbours.iter().any(|&it| program.objects[it as usize].is_read())
+                && program.unseen(uses).is_complete()
         }
     }
 }

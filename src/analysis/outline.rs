@@ -7,16 +7,14 @@ use super::facts::{Difference, UnitFacts};
 use super::program::{Context, Skeleton};
 
 /// What of a [`Skeleton`] findings about objects hang on, without places.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Outline {
-    complete: bool,
-    partial: bool,
     units: Vec<Unit>,
     /// The units in the order of execution.
     sequence: Vec<u32>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Unit {
     contexts: Box<[Context]>,
     reached: bool,
@@ -51,13 +49,12 @@ impl Outline {
         }
         let mut sequence: Vec<u32> = (0..).take(units.len()).collect();
         sequence.sort_by_key(|&it| skeleton.order.get(it as usize));
-        Self { complete: skeleton.complete, partial: skeleton.partial, units, sequence }
+        Self { units, sequence }
     }
 
     /// From this outline, with the facts that it is of, to another one: what moves; `None` when it may be anything.
     pub fn moved(&self, old: &[Arc<UnitFacts>], new: &Self, facts: &[Arc<UnitFacts>]) -> Option<Moved> {
-        let is_same_whole = (self.complete, self.partial) == (new.complete, new.partial);
-        if !is_same_whole || self.units.len() != new.units.len() || old.len() != facts.len() {
+        if self.units.len() != new.units.len() || old.len() != facts.len() {
             return None;
         }
         let mut changed = Vec::new();

@@ -280,14 +280,14 @@ pub struct Skeleton<'a> {
     /// Rank of each unit in the order of execution.
     pub order: Vec<u32>,
     /// Whether the program has a cyclic entry point and every block that it calls: only then does the absence of a
-    /// write, a read or a call say something.
+    /// write, a read or a call say something. A rule that judges an object asks for it by [`ProgramIndex::unseen`].
     pub complete: bool,
     /// Some of the program was not read or not understood.
     pub partial: bool,
     names: FxHashMap<UnitName, u32>,
     charts: OnceCell<Vec<Chart<'a>>>,
     actions: OnceCell<Actions<'a>>,
-    layouts: OnceCell<Layouts>,
+    layouts: OnceCell<Arc<Layouts>>,
 }
 
 /// Objects that several units can share, by footprint. They are collected when they are first asked for.
@@ -576,7 +576,12 @@ impl<'a> Skeleton<'a> {
 
     /// Where the fields of the blocks of STEP 7 lie.
     pub fn layouts(&self) -> &Layouts {
-        self.layouts.get_or_init(|| fields::layouts(self.units.iter().copied()))
+        self.layouts.get_or_init(|| Arc::new(fields::layouts(self.units.iter().copied())))
+    }
+
+    /// Takes the layouts of its units where they are made already.
+    pub(crate) fn know_layouts(&self, layouts: Arc<Layouts>) {
+        let _ = self.layouts.set(layouts);
     }
 
     /// Where the field at a place of a block is declared: in the block, or in the type that it goes by.

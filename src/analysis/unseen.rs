@@ -54,6 +54,8 @@ pub struct Access {
     unresolved: Modes,
     /// Of the uses of outputs, memory and data by address.
     addressed: Modes,
+    /// See [`Skeleton::complete`].
+    complete: bool,
 }
 
 impl Access {
@@ -64,7 +66,7 @@ impl Access {
         objects: impl Iterator<Item = (&'o Object, Modes)>,
         addressed: Modes,
     ) -> Self {
-        let mut found = Self { addressed, ..Self::default() };
+        let mut found = Self { addressed, complete: skeleton.complete, ..Self::default() };
         found.written.anywhere = skeleton.units.iter().any(|it| it.writes_indirectly);
         found.read.anywhere = skeleton.units.iter().any(|it| it.reads_indirectly);
         for (object, modes) in objects.filter(|it| Self::is_odd(it.0)) {
@@ -99,6 +101,7 @@ pub struct Questions {
     uncleared: bool,
     unresolved: Modes,
     addressed: Modes,
+    complete: bool,
 }
 
 /// What was asked for which objects. Each goes by the name of a unit: the unit, and the number of the object there.
@@ -116,6 +119,7 @@ impl Questions {
         self.uncleared |= other.uncleared;
         self.unresolved.join(other.unresolved);
         self.addressed.join(other.addressed);
+        self.complete |= other.complete;
         self
     }
 
@@ -125,10 +129,16 @@ impl Questions {
             || self.uncleared && other.uncleared
             || self.unresolved.meet(other.unresolved)
             || self.addressed.meet(other.addressed)
+            || self.complete && other.complete
     }
 }
 
 impl Summary {
+    /// See [`Skeleton::complete`].
+    pub fn is_complete(&self) -> bool {
+        self.access.complete
+    }
+
     /// In what parts another one is not the same.
     pub fn difference(&self, other: &Self) -> Questions {
         let (a, b) = (&self.access, &other.access);
@@ -138,6 +148,7 @@ impl Summary {
             uncleared: self.uncleared != other.uncleared,
             unresolved: a.unresolved.difference(b.unresolved),
             addressed: a.addressed.difference(b.addressed),
+            complete: a.complete != b.complete,
         }
     }
 
@@ -151,6 +162,7 @@ impl Summary {
         asked.meet(changed)
             && (asked.unresolved.meet(changed.unresolved)
                 || asked.addressed.meet(changed.addressed)
+                || asked.complete && changed.complete
                 || asked.uncleared && self.is_uncleared(place) != other.is_uncleared(place)
                 || asked.written && is_other(&a.written, &b.written)
                 || asked.read && is_other(&a.read, &b.read))
@@ -175,6 +187,12 @@ pub struct Unseen<'p, 'a> {
 impl Unseen<'_, '_> {
     fn ask(&self, questions: Questions) {
         self.asked.set(self.asked.get().join(questions));
+    }
+
+    /// Whether the program shows all that is done by name: see [`Skeleton::complete`].
+    pub fn is_complete(&self) -> bool {
+        self.ask(Questions { complete: true, ..Questions::default() });
+        self.program.access().complete
     }
 
     /// Whether some unit writes a place computed at run time that may be the object: the absence of another write says
@@ -217,9 +235,12 @@ impl Unseen<'_, '_> {
         is_in(self.program.uncleared(), &self.object.footprint)
     }
 
-    /// Whether what is missing, the set or the reset of a bit, may be done by a pointer or an index, or under another name:
-    /// by a symbol that nothing resolves for an address, and by any address for such a symbol.
+    /// Whether what is missing, the set or the reset of a bit, may be done by code that is not there, by a pointer or an
+    /// index, or under another name: by a symbol that nothing resolves for an address, and by any address for such a symbol.
     pub fn may_give(&self, missing: Mode) -> bool {
+        if !self.is_complete() {
+            return true;
+        }
         let gives = |mode: Mode| mode.writes() && (mode == missing || !matches!(mode, Mode::Set | Mode::Reset));
         let by_another_name =
             if self.object.class == Class::Symbol { self.has_addressed(gives) } else { self.has_unresolved(gives) };

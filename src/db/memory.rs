@@ -25,11 +25,18 @@ pub struct Memory {
     states: Mutex<FxHashMap<Key, Vec<State>>>,
 }
 
-/// Of each program, so many states are kept: one with a mistake that is being typed, one without, and some besides.
+/// Of each program, so many states are kept: one with the mistake that is being typed, one without, and some besides, for
+/// edits that make or undo a unit.
 const MOST_STATES: usize = 4;
 
+/// Whether programs of a family are judged in parts. A drum or a text block of PL7-2 reaches memory that no use of it names
+/// (PL72:895), and programs are small.
+fn keeps(family: Family) -> bool {
+    family != Family::Pl72
+}
+
 /// Findings about the objects of a program as it was once.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct State {
     target: Target,
     facts: Vec<Arc<UnitFacts>>,
@@ -42,20 +49,32 @@ struct State {
 }
 
 /// What makes the next step from a state a small one.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Kept {
     /// All there is to make the rest of: for which objects what was asked of the summary. They go by the name of a unit.
     Asked(AskedFor),
     Known(Known),
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Known {
     islands: Arc<Islands>,
     /// Of each finding, the objects at its place.
     subjects: Vec<Vec<u32>>,
     /// What was asked of the summary for which objects.
     asked: FxHashMap<u32, Questions>,
+}
+
+impl Kept {
+    fn known(self, family: Family, facts: &[Arc<UnitFacts>], ran: &Ran<Arc<Finding<Site>>>) -> Known {
+        match self {
+            Self::Known(known) => known,
+            Self::Asked(asked) => {
+                let skeleton = Skeleton::new(family, facts.iter().map(AsRef::as_ref).collect());
+                Known::new(Arc::new(Islands::new(&skeleton, facts)), ran, asked)
+            }
+        }
+    }
 }
 
 impl Known {
@@ -91,16 +110,33 @@ impl Memory {
         self.states.lock().unwrap_or_else(PoisonError::into_inner).clear();
     }
 
+    /// Gets ready for the next edit, as far as that can be done before it comes.
+    pub(super) fn get_ready(&self) {
+        let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner);
+        for ((_, family), states) in states.iter_mut().filter(|it| keeps(it.0.1)) {
+            states.iter_mut().for_each(|it| it.get_ready(*family));
+        }
+    }
+
     /// Starts from the state that is most like the program now.
     pub(super) fn step(&self, key: Key, target: Target, facts: &[Arc<UnitFacts>], program: &ProgramIndex<'_>) -> Step {
         let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner).remove(&key).unwrap_or_default();
-        // A drum or a text block of PL7-2 reaches memory that no use of it names (PL72:895), and programs are small.
-        let is_kept = key.1 != Family::Pl72;
-        let of_target = (0..).zip(&states).filter(|it| is_kept && it.1.target == target);
+        let of_target = (0..).zip(&states).filter(|it| keeps(key.1) && it.1.target == target);
         let outline = Outline::new(program);
         let moved = |it: &State| it.outline.moved(&it.facts, &outline, facts);
-        let near = of_target.filter_map(|(at, it)| Some((moved(it)?, at))).min_by_key(|it| it.0.units.len());
-        let from = near.map(|(by, at)| states.remove(at).follow(facts, by, program));
+        let is_as_complete = |it: &State| it.summary.is_complete() == program.complete;
+        let near = of_target.filter_map(|(at, it)| Some((!is_as_complete(it), moved(it)?, at)));
+        let near = near.min_by_key(|it| (it.0, it.1.units.len()));
+        let from = near.map(|(is_kept, by, at)| {
+            // Mistakes come and go: of what goes on from the other kind of state, that stays as it is.
+            let state = if is_kept {
+                states[at].get_ready(key.1);
+                states[at].clone()
+            } else {
+                states.remove(at)
+            };
+            state.follow(facts, by, program)
+        });
         if !states.is_empty() {
             self.states.lock().unwrap_or_else(PoisonError::into_inner).insert(key.clone(), states);
         }
@@ -140,16 +176,17 @@ impl Step {
 }
 
 impl State {
+    fn get_ready(&mut self, family: Family) {
+        if let Kept::Asked(asked) = &self.kept {
+            let known = Kept::Asked(asked.clone()).known(family, &self.facts, &self.ran);
+            self.kept = Kept::Known(known);
+        }
+    }
+
     /// Goes to a program in which some units have moved.
     fn follow(self, facts: &[Arc<UnitFacts>], by: Moved, program: &ProgramIndex<'_>) -> From {
         let Self { ran, asked_of_all, .. } = self;
-        let mut known = match self.kept {
-            Kept::Known(known) => known,
-            Kept::Asked(asked) => {
-                let old = Skeleton::new(program.family, self.facts.iter().map(AsRef::as_ref).collect());
-                Known::new(Arc::new(Islands::new(&old, &self.facts)), &ran, asked)
-            }
-        };
+        let mut known = self.kept.known(program.family, &self.facts, &ran);
         let islands = Arc::make_mut(&mut known.islands);
         let mut moved = islands.update(program, facts, &by.changed, &by.units);
         program.know(known.islands.clone());

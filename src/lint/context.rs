@@ -190,11 +190,11 @@ impl<'a> ProgramCx<'a> {
         })
     }
 
-    /// Outputs, memory bits and bits by symbol of which the program shows all: it is whole, and no other object that it names
-    /// gives the bit a value (no word or table that covers it). A memory bit is among them when something reads it. Of these,
-    /// rules may say that a place is missing, unless it is [unseen](crate::analysis::unseen::Unseen::may_give).
+    /// Outputs, memory bits and bits by symbol to which no other object that the program names gives a value (no word or table
+    /// that covers it). A memory bit is among them when something reads it. Of these, rules may say that a place is missing,
+    /// unless it is [unseen](crate::analysis::unseen::Unseen::may_give).
     pub fn known_bits(&self) -> impl Iterator<Item = &ObjectUses<'a>> {
-        let objects = (0..).zip(&self.program.objects).filter(|_| self.program.complete);
+        let objects = (0..).zip(&self.program.objects);
         objects.filter(|&(at, it)| self.is_known_bit(at, it)).map(|it| it.1)
     }
 

@@ -718,6 +718,7 @@ impl Server {
                         let _ = events.send(Event::Found { revision, path, found });
                     });
                 }
+                snapshot.roots.iter().for_each(|it| it.db.get_ready());
             };
             // A write ends it, and asks for the findings of what it made.
             let _ = catch_unwind(AssertUnwindSafe(|| db::unless_cancelled(work)));

@@ -38,6 +38,8 @@ struct File {
     listed: bool,
     /// Whether the folder's walk found it. Others are there while they are open.
     found: bool,
+    /// Whether it was ever open, and the database knows.
+    edited: bool,
     /// By which an open document is recognised.
     sample: Sample,
 }
@@ -198,6 +200,12 @@ impl Root {
         match input {
             Ok(input) => self.take(input),
             Err(_) => self.drop(path),
+        }
+        if let Some(file) = self.files.get_mut(path)
+            && let Some(source) = file.source
+            && !std::mem::replace(&mut file.edited, true)
+        {
+            self.db.set_edited(source);
         }
     }
 
