@@ -154,7 +154,7 @@ impl Lowering {
             self.allowed_in_transition(it);
         }
         if self.layout == Layout::Pl72 {
-            let Elements { listed, unlisted } = Elements::of(rung);
+            let Elements { listed, unlisted, .. } = Elements::of(rung, &self.pl7.b.model);
             let ends = self.marks();
             self.pl7.b.model.networks.push(Network {
                 kind: self.kind,
