@@ -2,7 +2,6 @@
 
 use crate::analysis::Site;
 use crate::analysis::reach::{Guarded, Part, Study};
-use crate::analysis::stuck::Stuck;
 use crate::lint::{ProgramCx, Sink};
 
 const NEVER: &str = "the receptivity is never true, so the transition is never crossed";
@@ -26,11 +25,11 @@ fn judge(study: &Study<'_, '_>, part: &Part, sink: &mut Sink<'_, Site>) {
     for &it in part.component.crossings.iter().filter(|it| is_asked(**it)) {
         // A constant is written on purpose.
         let is_judged = net.is_ever_valid(&part.all, it) && net.has_objects(it);
-        if is_judged && study.can_be_but(part, &[(it, false)], |it| study.is_dead_beside(part, it)).is_never() {
+        if is_judged && study.is_never(part, &[(it, false)], |it| study.is_dead_beside(part, it)) {
             sink.report(site(it), "the receptivity is always true");
         }
     }
-    let stuck = Stuck::of(study, part);
+    let stuck = study.stuck(part);
     for &it in stuck.causes.iter().filter(|it| is_asked(**it)) {
         sink.report(site(it), NEVER);
     }

@@ -4,14 +4,13 @@ use rustc_hash::FxHashSet;
 
 use crate::analysis::Site;
 use crate::analysis::reach::{Node, Part, Study};
-use crate::analysis::stuck::Stuck;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::chart::Graph;
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for it in cx.studies() {
         // Behind a receptivity that is never true: the affair of the rules about receptivities.
-        study(it, |part| Stuck::of(it, part).behind, sink);
+        study(it, |part| it.stuck(part).behind.clone(), sink);
     }
 }
 

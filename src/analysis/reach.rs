@@ -7,8 +7,9 @@
 //!
 //! Charts that nothing connects are looked at apart. What is too large is said to be not decided.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -17,6 +18,7 @@ use super::chart::{Chart, FactReceptivity, Step, Transition};
 use super::conditions::{Answer, Lessons, Objects, Space, Verdict};
 use super::facts::{self, UnitFacts};
 use super::program::ProgramIndex;
+use super::stuck::Stuck;
 use crate::model::chart::{Graph, StepKind, StepName};
 use crate::model::entity::{Family, Task};
 use crate::model::expr::{ExprId, Exprs, ObjectId};
@@ -126,11 +128,13 @@ pub struct Component {
 pub struct Part {
     pub component: Component,
     /// From the initial situation, branches of one step apart.
-    pub own: Reached,
-    /// From there and from what the program sets, as receptivities allow.
-    pub all: Reached,
+    pub own: Arc<Reached>,
+    /// From there and from what the program sets, as receptivities allow. Of most charts the same.
+    pub all: Arc<Reached>,
     /// Steps that none of these situations holds. Sorted.
     pub never_active: Vec<Node>,
+    /// Once that was asked.
+    stuck: OnceCell<Stuck>,
 }
 
 /// The charts of a section, and what they reach.
@@ -150,10 +154,9 @@ impl<'p, 'a> Study<'p, 'a> {
     pub fn new(mut net: Net<'p, 'a>) -> Self {
         let components = net.components();
         let part = |component: Component| {
-            let own = net.reach(&component);
-            let all = net.reach_all(&component);
+            let (own, all) = net.reach(&component);
             let never_active = all.never_active(&component);
-            Part { component, own, all, never_active }
+            Part { component, own, all, never_active, stuck: OnceCell::new() }
         };
         let parts: Vec<Part> = components.into_iter().map(part).collect();
         let mut part_of = vec![None; net.nodes.len()];
@@ -167,19 +170,41 @@ impl<'p, 'a> Study<'p, 'a> {
     /// are valid, with the values of objects that do it. The other charts of the section are in situations that they reach,
     /// as far as these are known. Never where no situation is such, or a receptivity is not known.
     pub fn can_be(&self, part: &Part, wanted: &[(usize, bool)]) -> Answer {
-        self.can_be_but(part, wanted, |_| false)
+        let space = self.net.space();
+        self.ask(part, wanted, |_| false, |it| space.solve(it))
     }
 
-    /// The same, where some steps have any state whatever the situation.
-    pub fn can_be_but(&self, part: &Part, wanted: &[(usize, bool)], is_free: impl Fn(Node) -> bool) -> Answer {
+    /// Whether they never can, where some steps have any state whatever the situation.
+    pub fn is_never(&self, part: &Part, wanted: &[(usize, bool)], is_free: impl Fn(Node) -> bool) -> bool {
+        let space = self.net.space();
+        self.ask(part, wanted, is_free, |it| space.possible(it).into()).is_never()
+    }
+
+    /// What is stuck in a part.
+    pub fn stuck<'s>(&self, part: &'s Part) -> &'s Stuck {
+        part.stuck.get_or_init(|| Stuck::of(self, part))
+    }
+
+    /// [`Self::can_be`], by the answers that are given to conditions of one moment.
+    fn ask<W>(
+        &self,
+        part: &Part,
+        wanted: &[(usize, bool)],
+        is_free: impl Fn(Node) -> bool,
+        solve: impl Fn(&[(ExprId, bool)]) -> Answer<W>,
+    ) -> Answer<W> {
         /// More ways for the other charts to stand are not told apart.
         const MOST: usize = 256;
-        let free = self.net.can_be_beside(part, wanted, &[], &is_free);
+        let free = self.net.can_be_beside(part, wanted, &[], &is_free, &solve);
         if !matches!(free, Answer::Possible(_)) {
             return free;
         }
+        let beside = self.states_beside(part, wanted, &is_free);
+        if beside.is_empty() {
+            return free;
+        }
         let mut ways: Vec<Vec<(ExprId, bool)>> = vec![Vec::new()];
-        for states in self.states_beside(part, wanted, &is_free) {
+        for states in beside {
             if states.len() * ways.len() > MOST {
                 return free;
             }
@@ -190,7 +215,7 @@ impl<'p, 'a> Study<'p, 'a> {
         }
         let mut answer = Answer::Never;
         for way in ways {
-            match self.net.can_be_beside(part, wanted, &way, &is_free) {
+            match self.net.can_be_beside(part, wanted, &way, &is_free, &solve) {
                 Answer::Never => {}
                 Answer::NotDecided => answer = Answer::NotDecided,
                 found @ Answer::Possible(_) => return found,
@@ -317,6 +342,8 @@ pub struct Reached {
     from: Vec<Option<(u32, Vec<usize>)>>,
     /// Not all situations were looked at.
     pub is_partial: bool,
+    /// Branches of one step were taken together.
+    takes_branches: bool,
     /// Situations that nothing leaves.
     pub dead: Vec<u32>,
     /// A step that is activated while it is active: in which situation, by crossing what, which step.
@@ -676,17 +703,18 @@ impl<'p, 'a> Net<'p, 'a> {
     }
 
     /// What a component reaches from its initial situation when branches of one step are never taken together: that they
-    /// can be is a finding of its own, and what follows from it is none.
-    pub fn reach(&self, component: &Component) -> Reached {
-        self.explore(component, std::slice::from_ref(&component.initial), true)
+    /// can be is a finding of its own, and what follows from it is none. And what it reaches from there and from what the
+    /// program sets.
+    fn reach(&self, component: &Component) -> (Arc<Reached>, Arc<Reached>) {
+        let starts = self.starts(component);
+        let all = Arc::new(self.explore(component, &starts, false));
+        if starts.len() == 1 && !all.takes_branches {
+            return (all.clone(), all);
+        }
+        (Arc::new(self.explore(component, std::slice::from_ref(&component.initial), true)), all)
     }
 
-    /// What it reaches from there and from what the program sets.
-    pub fn reach_all(&self, component: &Component) -> Reached {
-        self.explore(component, &self.starts(component), false)
-    }
-
-    /// The same when branches of one step are never taken together.
+    /// What it reaches from there and from what the program sets when branches of one step are never taken together.
     pub fn reach_apart(&self, component: &Component) -> Reached {
         self.explore(component, &self.starts(component), true)
     }
@@ -725,7 +753,7 @@ impl<'p, 'a> Net<'p, 'a> {
                 reached.is_partial = true;
                 return reached;
             }
-            let crossed = walker.crossings(&situation, &valid, &mut cache, &mut reached.is_partial);
+            let crossed = walker.crossings(&situation, &valid, &mut cache, &mut reached);
             if valid.is_empty() || crossed.is_empty() && !reached.is_partial {
                 reached.dead.push(at);
             }
@@ -784,14 +812,15 @@ impl<'p, 'a> Net<'p, 'a> {
         asked.filter_map(|it| component.nodes.get(it.0).copied())
     }
 
-    /// See [`Study::can_be_but`]; `beside`: what else holds.
-    fn can_be_beside(
+    /// See [`Study::ask`]; `beside`: what else holds.
+    fn can_be_beside<W>(
         &self,
         part: &Part,
         wanted: &[(usize, bool)],
         beside: &[(ExprId, bool)],
         is_free: &impl Fn(Node) -> bool,
-    ) -> Answer {
+        solve: &impl Fn(&[(ExprId, bool)]) -> Answer<W>,
+    ) -> Answer<W> {
         let (component, reached) = (&part.component, &part.all);
         let guards: Option<Vec<(ExprId, bool)>> = wanted
             .iter()
@@ -818,7 +847,7 @@ impl<'p, 'a> Net<'p, 'a> {
             }
             let steps = asked.iter().zip(values).map(|(it, value)| (it.1, value));
             let all: Vec<(ExprId, bool)> = guards.iter().chain(beside).copied().chain(steps).collect();
-            match self.space().solve(&all) {
+            match solve(&all) {
                 Answer::Never => {}
                 Answer::NotDecided => answer = Answer::NotDecided,
                 found @ Answer::Possible(_) => return found,
@@ -1062,13 +1091,20 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
     }
 
     /// Sets of crossings, each of which can be what happens next.
-    fn crossings(&self, situation: &[u64], valid: &[usize], cache: &mut Cache, partial: &mut bool) -> Vec<Vec<usize>> {
+    fn crossings(
+        &self,
+        situation: &[u64],
+        valid: &[usize],
+        cache: &mut Cache,
+        reached: &mut Reached,
+    ) -> Vec<Vec<usize>> {
         let mut free: Vec<Vec<usize>> = Vec::new();
         // Of those that depend on one another and cannot all wait, one set or the other happens.
         let mut urgent: Vec<Vec<Vec<usize>>> = Vec::new();
         for cluster in self.clusters(valid) {
             let (sets, is_partial) = self.sets(&cluster, situation, cache);
-            *partial |= is_partial;
+            reached.is_partial |= is_partial;
+            reached.takes_branches |= sets.iter().any(|it| self.takes_branches(it));
             if sets.iter().any(Vec::is_empty) {
                 free.extend(sets.into_iter().filter(|it| !it.is_empty()));
             } else if !sets.is_empty() {
@@ -1081,7 +1117,7 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
         for sets in &urgent {
             let combined = bases.iter().flat_map(|base| sets.iter().map(move |it| [base.as_slice(), it].concat()));
             let combined: Vec<Vec<usize>> = combined.take(MOST + 1).collect();
-            *partial |= combined.len() > MOST;
+            reached.is_partial |= combined.len() > MOST;
             bases = combined;
         }
         let alone = bases.iter().filter(|it| !it.is_empty()).cloned();
@@ -1178,14 +1214,23 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
         (sets, left_out)
     }
 
+    fn are_branches(&self, a: usize, b: usize) -> bool {
+        let [a, b] = [a, b].map(|it| &self.net.crossings[it].from);
+        a.iter().any(|it| b.contains(it))
+    }
+
+    /// Whether a set crosses two branches of one step.
+    fn takes_branches(&self, set: &[usize]) -> bool {
+        set.iter().enumerate().any(|(at, &a)| set[..at].iter().any(|&b| self.are_branches(a, b)))
+    }
+
     /// Of sets that cross two branches of one step, what is left when one of them is taken.
     fn apart(&self, sets: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
         let mut found: Vec<Vec<usize>> = Vec::new();
         for set in sets {
             let mut kept: Vec<usize> = Vec::new();
             for it in set {
-                let from = &self.net.crossings[it].from;
-                if !kept.iter().any(|&it| self.net.crossings[it].from.iter().any(|it| from.contains(it))) {
+                if !kept.iter().any(|&other| self.are_branches(it, other)) {
                     kept.push(it);
                 }
             }
@@ -1391,6 +1436,8 @@ mod tests {
                     return Ok(());
                 }
                 prop_assert_eq!(&situations(study, &part.all, &part.component), &known);
+                let apart = study.net.reach_apart(&part.component);
+                prop_assert_eq!((&apart.situations, &apart.lost), (&part.own.situations, &part.own.lost));
                 let found: BTreeSet<Steps> = part.all.dead.iter().map(|&it| {
                     study.net.active(&part.component, &part.all.situations[it as usize]).map(|it| study.net.name(it)).collect()
                 }).collect();
@@ -1688,6 +1735,8 @@ mod tests {
             with_study(&text, |study| {
                 prop_assert_eq!(study.parts.len(), 1);
                 let part = &study.parts[0];
+                let apart = study.net.reach_apart(&part.component);
+                prop_assert_eq!(&apart.situations, &part.own.situations);
                 for reached in [&part.own, &part.all] {
                     prop_assert!(!reached.is_partial && reached.dead.is_empty() && reached.lost.is_empty(), "{}", text);
                     let active: BTreeSet<Node> =

@@ -23,11 +23,12 @@ pub struct Stuck {
 const MOST: usize = 256;
 
 impl Stuck {
-    pub fn of(study: &Study<'_, '_>, part: &Part) -> Self {
+    /// See [`Study::stuck`], which asks once.
+    pub(super) fn of(study: &Study<'_, '_>, part: &Part) -> Self {
         let net = &study.net;
         let is_true = |it: usize, never: &FxHashSet<Node>| {
             let is_free = |it: Node| never.contains(&it) || study.is_dead_beside(part, it);
-            !study.can_be_but(part, &[(it, true)], is_free).is_never()
+            !study.is_never(part, &[(it, true)], is_free)
         };
         let none = FxHashSet::default();
         let stuck: Vec<usize> = part

@@ -10,7 +10,7 @@ use rowan::TextRange;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::sets::Sets;
-use crate::syntax::pl7::ast::{Cell, Expr, Rung};
+use crate::syntax::pl7::ast::{Cell, Expr, Rung, RungRow};
 use crate::syntax::pl7::ladder_words::Element;
 use crate::syntax::{AstNode as _, Language};
 use crate::target::{pl7, pl72};
@@ -146,7 +146,8 @@ impl Wire {
     pub const RAIL: Self = Self(0);
 }
 
-/// An element where it stands. A link over several cells is one element a cell.
+/// An element where it stands. A link over several cells is one element, unless a vertical link meets it between them: then
+/// it is one up to there, and another one behind.
 #[derive(Debug, Clone)]
 pub struct Placed<'t> {
     pub cell: Cell<'t>,
@@ -325,7 +326,8 @@ pub struct Row<'t> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Unit {
     Empty,
-    /// Part of an element, by index.
+    Link,
+    /// Part of another element, which the number tells from those beside it.
     Part(u32),
 }
 
@@ -337,26 +339,90 @@ struct Rows {
     links: Vec<(usize, usize, TextRange)>,
 }
 
-impl Row<'_> {
+/// A cell while its row is read, at the column behind all before it.
+struct Met<'t> {
+    cell: Cell<'t>,
+    element: Option<Element>,
+    column: u32,
+    /// Cells that it takes: of an empty line, those that its row still lacks.
+    width: u32,
+}
+
+impl<'t> Row<'t> {
+    /// The row, and those that an empty line in it adds.
+    fn read(row: RungRow<'t>, layout: Layout, rows: &mut Vec<Self>, mut each: impl FnMut(Met<'t>)) {
+        let range = row.syntax().text_range();
+        let mut read = Row { columns: 0, excess: None, is_assumed: false, is_empty: true, range };
+        let mut lines = 1;
+        for cell in row.cells() {
+            let element = cell.element();
+            let count = || cell.count().unwrap_or(1);
+            let width = match element {
+                Some(Element::EmptyLine) => {
+                    // An empty line is a row of its own, whatever else stands in it.
+                    lines = count().clamp(1, layout.most_lines());
+                    layout.columns().saturating_sub(read.columns)
+                }
+                Some(Element::EmptyCell | Element::HLink | Element::ShortCircuit) => count().min(layout.most_cells()),
+                Some(it) => layout.width_of(it, cell),
+                None => 1,
+            };
+            each(Met { cell, element, column: read.columns, width });
+            read.columns = read.columns.saturating_add(width);
+            read.is_assumed |= element == Some(Element::Block) && layout.is_assumed(cell);
+            read.is_empty &= matches!(element, Some(Element::EmptyLine | Element::EmptyCell));
+            if read.columns > layout.columns() {
+                read.excess = read.excess.or(Some(cell));
+            }
+        }
+        rows.push(read);
+        let empty = Row { columns: layout.columns(), excess: None, is_assumed: false, is_empty: true, range };
+        rows.extend((1..lines).map(|_| empty));
+    }
+
     /// Rows down to the last one that holds something.
     pub fn used(rows: &[Self]) -> u32 {
         let last = rows.iter().rposition(|it| !it.is_empty);
-        last.map_or(0, |it| u32::try_from(it + 1).unwrap_or(u32::MAX))
+        last.map_or(0, |it| number(it + 1))
     }
+}
+
+impl Rows {
+    /// Adds a cell to the row that is not finished, and gives the element in it.
+    fn add<'t>(&mut self, row: usize, met: &Met<'t>) -> Option<Placed<'t>> {
+        let &Met { cell, element, column, width } = met;
+        let unit = match element {
+            Some(Element::EmptyLine | Element::EmptyCell | Element::VLink) => Unit::Empty,
+            Some(Element::HLink | Element::ShortCircuit) => Unit::Link,
+            _ => Unit::Part(number(self.units.items.len())),
+        };
+        self.units.items.extend(std::iter::repeat_n(unit, width as usize));
+        if matches!(element, Some(Element::VLink | Element::ShortCircuit)) {
+            self.links.push((row, self.units.open_len(), cell.syntax().text_range()));
+        }
+        (unit != Unit::Empty && width > 0).then(|| Placed { cell, element, row: number(row), column, width, index: 0 })
+    }
+}
+
+fn number(it: usize) -> u32 {
+    u32::try_from(it).unwrap_or(u32::MAX)
 }
 
 impl<'t> Grid<'t> {
     pub fn new(rung: Rung<'t>, layout: Layout) -> Self {
         let (mut grid, rows) = Self::read(rung, layout);
-        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
         grid.vertical = rows.links.iter().map(|it| (number(it.0), number(it.1))).collect();
         grid.wire(&rows);
         grid
     }
 
-    /// The rows alone, of which nothing is wired.
+    /// The rows alone, without what stands in them.
     pub fn rows_of(rung: Rung<'t>, layout: Layout) -> Vec<Row<'t>> {
-        Self::read(rung, layout).0.rows
+        let mut rows = Vec::new();
+        for row in rung.rows() {
+            Row::read(row, layout, &mut rows, |_| ());
+        }
+        rows
     }
 
     fn read(rung: Rung<'t>, layout: Layout) -> (Self, Rows) {
@@ -377,71 +443,48 @@ impl<'t> Grid<'t> {
         };
         let mut rows = Rows { units: Lists::with_capacity(lines, cells), links: Vec::new() };
         for row in rung.rows() {
-            grid.read_row(row, &mut rows);
+            let at = rows.units.len();
+            let before = grid.rows.len();
+            Row::read(row, layout, &mut grid.rows, |it| grid.placed.extend(rows.add(at, &it)));
+            rows.units.finish();
+            for _ in before + 1..grid.rows.len() {
+                rows.units.items.extend(std::iter::repeat_n(Unit::Empty, layout.columns() as usize));
+                rows.units.finish();
+            }
+        }
+        grid.part_links(&rows);
+        for (index, it) in (0..).zip(&mut grid.placed) {
+            it.index = index;
         }
         (grid, rows)
     }
 
-    fn read_row(&mut self, row: crate::syntax::pl7::ast::RungRow<'t>, rows: &mut Rows) {
-        let layout = self.layout;
-        let most = layout.columns() as usize;
-        let Rows { units, links } = rows;
-        let at = units.len();
-        let mut excess = None;
-        let mut is_assumed = false;
-        let mut is_empty = true;
-        let mut lines = 1;
-        for cell in row.cells() {
-            let element = cell.element();
-            let count = || cell.count().unwrap_or(1);
-            let cells = || count().min(layout.most_cells()) as usize;
-            match element {
-                Some(Element::EmptyLine) => {
-                    // An empty line is a row of its own, whatever else stands in it.
-                    lines = count().clamp(1, layout.most_lines());
-                    let missing = most.saturating_sub(units.open_len());
-                    units.items.extend(std::iter::repeat_n(Unit::Empty, missing));
-                }
-                Some(Element::EmptyCell) => units.items.extend(std::iter::repeat_n(Unit::Empty, cells())),
-                Some(Element::VLink) => {
-                    units.items.push(Unit::Empty);
-                    links.push((at, units.open_len(), cell.syntax().text_range()));
-                }
-                Some(link @ (Element::HLink | Element::ShortCircuit)) => {
-                    for _ in 0..cells() {
-                        self.place(cell, element, at, units);
-                    }
-                    if link == Element::ShortCircuit {
-                        links.push((at, units.open_len(), cell.syntax().text_range()));
-                    }
-                }
-                _ => self.place(cell, element, at, units),
-            }
-            is_assumed |= element == Some(Element::Block) && layout.is_assumed(cell);
-            is_empty &= matches!(element, Some(Element::EmptyLine | Element::EmptyCell));
-            if units.open_len() > most {
-                excess = excess.or(Some(cell));
-            }
+    /// Parts the horizontal links that vertical ones meet.
+    fn part_links(&mut self, rows: &Rows) {
+        if rows.links.is_empty() {
+            return;
         }
-        let columns = u32::try_from(units.open_len()).unwrap_or(u32::MAX);
-        let range = row.syntax().text_range();
-        self.rows.push(Row { columns, excess, is_assumed, is_empty, range });
-        units.finish();
-        for _ in 1..lines {
-            let columns = layout.columns();
-            self.rows.push(Row { columns, excess: None, is_assumed: false, is_empty: true, range });
-            units.items.extend(std::iter::repeat_n(Unit::Empty, most));
-            units.finish();
+        let mut met: Vec<(u32, u32)> = Vec::with_capacity(2 * rows.links.len());
+        for it in &rows.links {
+            let (row, edge) = (number(it.0), number(it.1));
+            met.extend([(row, edge), (row + 1, edge)]);
         }
-    }
-
-    fn place(&mut self, cell: Cell<'t>, element: Option<Element>, row: usize, units: &mut Lists<Unit>) {
-        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
-        let index = number(self.placed.len());
-        let width = element.map_or(1, |it| self.layout.width_of(it, cell));
-        let (row, column) = (number(row), number(units.open_len()));
-        self.placed.push(Placed { cell, element, row, column, width, index });
-        units.items.extend(std::iter::repeat_n(Unit::Part(index), width as usize));
+        met.sort_unstable();
+        met.dedup();
+        let mut parts = Vec::with_capacity(self.placed.len() + met.len());
+        for it in self.placed.drain(..) {
+            let end = it.end();
+            let mut rest = it;
+            if rest.is_link() {
+                let from = met.partition_point(|at| *at <= (rest.row, rest.column));
+                for &(_, edge) in met[from..].iter().take_while(|at| **at < (rest.row, end)) {
+                    parts.push(Placed { width: edge - rest.column, ..rest.clone() });
+                    (rest.column, rest.width) = (edge, end - edge);
+                }
+            }
+            parts.push(rest);
+        }
+        self.placed = parts;
     }
 
     /// Finds the wires, and what meets at them.
@@ -456,7 +499,7 @@ impl<'t> Grid<'t> {
             sets.join(0, first(row));
         }
         let unit = |row: usize, column: usize| units.get(row).and_then(|it| it.get(column)).copied();
-        let is_full = |row: usize, column: usize| matches!(unit(row, column), Some(Unit::Part(_)));
+        let is_full = |row: usize, column: usize| unit(row, column).is_some_and(|it| it != Unit::Empty);
         // Whether a link ends at a cell beside the point, or goes on.
         let mut drawn: FxHashSet<(usize, usize)> = FxHashSet::default();
         drawn.extend(links.iter().map(|it| (it.0, it.1)));
@@ -630,7 +673,9 @@ impl<'t> Grid<'t> {
     pub fn networks(&self) -> Vec<Vec<usize>> {
         if self.layout == Layout::Pl72 {
             let mut all: Vec<usize> = (0..self.placed.len()).collect();
-            all.sort_by_key(|&it| (self.placed[it].column, self.placed[it].row));
+            // What a link gives is there with its last cell.
+            let column = |it: &Placed<'_>| if it.is_link() { it.end() - 1 } else { it.column };
+            all.sort_by_key(|&it| (column(&self.placed[it]), self.placed[it].row));
             return vec![all];
         }
         let mut sets = Sets::new(self.placed.len());
@@ -755,7 +800,8 @@ impl<'t> Grid<'t> {
                     let is_test = it.element.is_some_and(Element::is_test) && !it.is_block();
                     if is_test && self.comes_from(last, &sources) {
                         let wire = chain.iter().flat_map(|&it| self.links_left_of(it)).find(|link| {
-                            link.column == it.column && self.inputs(link).iter().all(|it| sources[it.0 as usize])
+                            (link.column..link.end()).contains(&it.column)
+                                && self.inputs(link).iter().all(|it| sources[it.0 as usize])
                         });
                         flaws.push((Flaw::Bypassed, it.range(), wire.map(Placed::range)));
                     }
@@ -771,7 +817,8 @@ impl<'t> Grid<'t> {
 
     /// Beyond all controllers' limits the rung is wrong anyway.
     fn is_beyond_reason(&self) -> bool {
-        self.placed.len() > 2 * (self.layout.most_lines() * self.layout.most_cells()) as usize
+        let cells: u32 = self.placed.iter().map(|it| it.width).sum();
+        cells > 2 * self.layout.most_lines() * self.layout.most_cells()
     }
 
     fn links_left_of(&self, wire: usize) -> impl Iterator<Item = &Placed<'t>> {
@@ -918,6 +965,23 @@ mod tests {
         // What stands in a row below ends the block.
         let rows = "OPEN_CONTACT(R),BLOCK(%C8),EMPTY_CELL(7);\nOPEN_CONTACT(A),H_LINK(9),COIL(X);";
         assert_eq!(with(rows, |grid| grid.inputs(&grid.placed[1]).len()), 1);
+    }
+
+    #[test]
+    fn links_are_parted_where_vertical_ones_meet_them() {
+        let rows = "OPEN_CONTACT(A),H_LINK,SHORT_CIRCUIT,H_LINK(7),COIL(X);\nOPEN_CONTACT(B),H_LINK(9),COIL(Y);\n\
+                    OPEN_CONTACT(C),H_LINK(9),COIL(Z);";
+        with(rows, |grid| {
+            let links = |row: u32| -> Vec<(u32, u32)> {
+                let links = grid.placed.iter().filter(|it| it.row == row && it.is_link());
+                links.map(|it| (it.column, it.width)).collect()
+            };
+            assert_eq!(links(0), [(1, 1), (2, 1), (3, 7)]);
+            assert_eq!(links(1), [(1, 2), (3, 7)]);
+            assert_eq!(links(2), [(1, 9)]);
+        });
+        assert_eq!(order(rows), ["A B X Y", "C Z"]);
+        assert_eq!(flaws(rows), []);
     }
 
     #[test]

@@ -62,15 +62,25 @@ pub enum Verdict {
     NotDecided,
 }
 
-/// A [`Verdict`] with what makes the conditions hold.
+/// A [`Verdict`] with what makes the conditions hold, where that is asked for.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Answer {
+pub enum Answer<W = Witness> {
     Never,
-    Possible(Witness),
+    Possible(W),
     NotDecided,
 }
 
-impl Answer {
+impl From<Verdict> for Answer<()> {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Never => Self::Never,
+            Verdict::Possible => Self::Possible(()),
+            Verdict::NotDecided => Self::NotDecided,
+        }
+    }
+}
+
+impl<W> Answer<W> {
     pub fn is_never(&self) -> bool {
         matches!(self, Self::Never)
     }

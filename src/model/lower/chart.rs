@@ -18,7 +18,6 @@ use crate::model::chart::{
 };
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
-use crate::model::ladder::{Grid, Layout};
 use crate::model::object::{self, Class, Object};
 use crate::model::unit::{Fork, Mode, StatementKind};
 use crate::syntax::pl7::ast::{BinOp, Expr, IlInstr, Rung, Sentence, Stmt};
@@ -337,6 +336,7 @@ impl<'t> Lowering<'t> {
             let mut sentences = tree.sentences().filter(|it| has_code(*it)).peekable();
             let is_missing = sentences.peek().is_none() && tree.rungs().next().is_none();
             let value;
+            let mut link = None;
             (pl7, value) = match language {
                 CodeLanguage::Il => {
                     pl7.b.set_back_targets(self.back_targets(tree.syntax()));
@@ -348,7 +348,9 @@ impl<'t> Lowering<'t> {
                 }
                 CodeLanguage::Ladder => {
                     pl7.b.set_back_targets(self.back_targets(tree.syntax()));
-                    ladder::rungs(pl7, tree.rungs(), true)
+                    let (pl7, value, before_end) = ladder::rungs(pl7, tree.rungs(), true);
+                    link = before_end;
+                    (pl7, value)
                 }
             };
             let receptivity = match value {
@@ -363,7 +365,7 @@ impl<'t> Lowering<'t> {
                 pl7.b.statement(StatementKind::Branch { condition, of: Fork::Receptivity }, range);
             }
             let is_read = matches!(receptivity, Receptivity::Value(_));
-            let room = if is_read { room(&mut pl7, tree, language) } else { None };
+            let room = if is_read { room(&mut pl7, tree, language, link) } else { None };
             if let Some(transition) = self.chart.transitions.get_mut(at) {
                 transition.receptivity = receptivity;
                 transition.room = room;
@@ -454,10 +456,10 @@ impl<'t> Lowering<'t> {
             let language = code.language().unwrap_or_else(|| language_of(code.rungs().next(), code.sentences().next()));
             let first = index(pl7.b.model.anchors.len());
             pl7.b.set_back_targets(self.back_targets(code.syntax()));
-            (pl7, _) = match language {
-                CodeLanguage::Il => il::sentences(pl7, code.sentences(), false),
-                CodeLanguage::St => st::sentences(pl7, code.sentences()),
-                CodeLanguage::Ladder => ladder::rungs(pl7, code.rungs(), false),
+            pl7 = match language {
+                CodeLanguage::Il => il::sentences(pl7, code.sentences(), false).0,
+                CodeLanguage::St => st::sentences(pl7, code.sentences()).0,
+                CodeLanguage::Ladder => ladder::rungs(pl7, code.rungs(), false).0,
             };
             let action = &mut self.chart.actions[at];
             action.anchors = first..index(pl7.b.model.anchors.len());
@@ -547,15 +549,21 @@ fn language_of(rung: Option<Rung<'_>>, sentence: Option<Sentence<'_>>) -> CodeLa
     }
 }
 
-/// Where the receptivity of a transition can ask more: none in what holds comments, labels or several sentences.
-fn room(pl7: &mut Pl7, tree: ast::Transition<'_>, language: CodeLanguage) -> Option<Room> {
+/// Where the receptivity of a transition can ask more: none in what holds comments, labels or several sentences. In ladder it
+/// is the link before the end.
+fn room(
+    pl7: &mut Pl7,
+    tree: ast::Transition<'_>,
+    language: CodeLanguage,
+    link: Option<(TextRange, u32)>,
+) -> Option<Room> {
     let is_comment = |it: SyntaxToken<'_>| it.kind() == SyntaxKind::Comment;
     if language == CodeLanguage::Ladder {
+        let (place, cells) = link?;
         let rung = tree.rungs().next().filter(|_| tree.rungs().nth(1).is_none())?;
         if rung.syntax().descendant_tokens().any(is_comment) {
             return None;
         }
-        let (place, cells) = Grid::new(rung, Layout::of(pl7.b.model.language)).link_before_end()?;
         return Some(Room::Link { at: pl7.b.anchor(place), cells });
     }
     let mut sentences = tree.sentences().filter(|it| has_code(*it));

@@ -33,19 +33,20 @@ pub(super) fn lower(root: SyntaxNode<'_>, text: &str, entity: Entity, language: 
     super::chart::enter_piece(&mut pl7);
     pl7.b.set_back_targets(pl7::back_targets(root, text, language));
     let code = ast::Root::cast(root).into_iter().flat_map(ast::Root::rungs);
-    let (mut pl7, receptivity) = rungs(pl7, code, is_transition);
+    let (mut pl7, receptivity, _) = rungs(pl7, code, is_transition);
     if let Some(condition) = receptivity {
         pl7.b.statement(StatementKind::Branch { condition, of: Fork::Receptivity }, root.text_range());
     }
     pl7.b.finish()
 }
 
-/// The rungs of a section, an action or a transition. Gives what the `(#)` of a transition takes.
+/// The rungs of a section, an action or a transition. Gives what the `(#)` of a transition takes, and of its last rung what
+/// [`Grid::link_before_end`] does.
 pub(super) fn rungs<'t>(
     pl7: Pl7,
     rungs: impl IntoIterator<Item = ast::Rung<'t>>,
     is_transition: bool,
-) -> (Pl7, Option<ExprId>) {
+) -> (Pl7, Option<ExprId>, Option<(TextRange, u32)>) {
     let layout = Layout::of(pl7.b.model.language);
     let is_section =
         !pl7.b.model.language.is_chart() && !matches!(pl7.b.model.entity, Entity::Pl7 { part: Part::Chart(_), .. });
@@ -55,11 +56,11 @@ pub(super) fn rungs<'t>(
         false => CodeKind::Action,
     };
     let piece = pl7.b.model.networks.last().map_or(0, |it| it.piece + 1);
-    let mut lowering = Lowering { pl7, layout, is_transition, piece, kind, receptivity: None };
+    let mut lowering = Lowering { pl7, layout, is_transition, piece, kind, receptivity: None, link: None };
     for rung in rungs {
         lowering.rung(rung);
     }
-    (lowering.pl7, lowering.receptivity)
+    (lowering.pl7, lowering.receptivity, lowering.link)
 }
 
 /// One rung with a `(#)` and nothing that says what it belongs to: what documents print of a receptivity.
@@ -81,6 +82,8 @@ struct Lowering {
     kind: CodeKind,
     /// What the hash coils have taken.
     receptivity: Option<ExprId>,
+    /// The link before the end of a receptivity.
+    link: Option<(TextRange, u32)>,
 }
 
 /// A rung while it is executed. Its connected networks share no wire but the rail.
@@ -88,7 +91,7 @@ struct Run {
     /// Whether each wire has power.
     power: Vec<ExprId>,
     /// Conditions of contacts and comparisons, by element.
-    tests: FxHashMap<usize, ExprId>,
+    tests: Vec<Option<ExprId>>,
     /// Calls of DFBs, by the place of the block.
     instances: FxHashMap<TextRange, u32>,
     /// Whether all of the rung was understood, once that was asked.
@@ -135,11 +138,13 @@ impl Lowering {
         for (flaw, range, related) in flaws {
             self.flaw(flaw, range).related.extend(related.map(|it| (it, "this wire goes round it")));
         }
+        self.link = if self.is_transition { grid.link_before_end() } else { None };
         let networks = grid.networks();
         let mut contacts = Vec::new();
         let mut coils = Vec::new();
         let power = vec![Exprs::FALSE; grid.wire_count()];
-        let mut run = Run { power, tests: FxHashMap::default(), instances: FxHashMap::default(), is_read: None };
+        let tests = vec![None; grid.placed.len()];
+        let mut run = Run { power, tests, instances: FxHashMap::default(), is_read: None };
         run.power[Grid::index(Wire::RAIL)] = Exprs::TRUE;
         for (number, elements) in networks.iter().enumerate() {
             self.network(&grid, elements, number, &mut run, &mut contacts, &mut coils);
@@ -149,7 +154,7 @@ impl Lowering {
             self.allowed_in_transition(it);
         }
         if self.layout == Layout::Pl72 {
-            let Elements { listed, unlisted } = Elements::of(rung);
+            let Elements { listed, unlisted, .. } = Elements::of(rung, &self.pl7.b.model);
             let ends = self.marks();
             self.pl7.b.model.networks.push(Network {
                 kind: self.kind,
@@ -190,9 +195,7 @@ impl Lowering {
             if !matches!(it.element, Some(Element::HLink | Element::ShortCircuit)) {
                 self.pl7.b.instruction(it.range());
             }
-            if let Some(value) = self.test(it, |object, range| contacts.push(Use { object, network: number, range })) {
-                run.tests.insert(index, value);
-            }
+            run.tests[index] = self.test(it, |object, range| contacts.push(Use { object, network: number, range }));
         }
         for &index in elements {
             self.conduct(grid, index, run);
@@ -216,9 +219,7 @@ impl Lowering {
             if !matches!(it.element, Some(Element::HLink | Element::ShortCircuit)) {
                 self.pl7.b.instruction(it.range());
             }
-            if let Some(value) = self.test(it, |_, _| ()) {
-                run.tests.insert(index, value);
-            }
+            run.tests[index] = self.test(it, |_, _| ());
             self.conduct(grid, index, run);
             self.coil(it, run.at(grid, it));
         }
@@ -317,8 +318,7 @@ impl Lowering {
             }
             Some(element) if element.is_action() => return,
             _ => {
-                let value = run.tests.get(&index).copied();
-                let value = value.unwrap_or_else(|| self.pl7.b.exprs().opaque());
+                let value = run.tests[index].unwrap_or_else(|| self.pl7.b.exprs().opaque());
                 self.pl7.b.exprs().and(before, value)
             }
         };

@@ -649,12 +649,20 @@ pub(super) fn pin(block: &str, input: &str) -> Pin {
     }
 }
 
+/// How the words of jumps start in ladder.
+const JUMP: &[u8] = b"JUMP";
+
 /// Labels that a jump below them goes to, for all languages.
 pub(super) fn back_targets(root: SyntaxNode<'_>, text: &str, language: Language) -> rustc_hash::FxHashSet<SmolStr> {
     let mut labels = rustc_hash::FxHashSet::default();
     let mut back = rustc_hash::FxHashSet::default();
-    // Most sections have no label at all; those of PL7-2, whose labels may lack the percent sign, have many.
-    if !language.is_pl7_2() && !text.contains("%L") && !text.contains("%l") {
+    // Most sections have no label at all. Those of PL7-2, whose labels may lack the percent sign, have many, and few jumps.
+    let bytes = text.as_bytes();
+    let has_jump = || {
+        let is_jump = |at: usize| bytes.get(at..at + JUMP.len()).is_some_and(|it| it.eq_ignore_ascii_case(JUMP));
+        memchr::memchr2_iter(b'J', b'j', bytes).any(is_jump)
+    };
+    if !(if language.is_pl7_2() { has_jump() } else { text.contains("%L") || text.contains("%l") }) {
         return back;
     }
     let mut in_definition = false;

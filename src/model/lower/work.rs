@@ -1,6 +1,9 @@
 //! Elements of a network of PL7-2, as the tables of times and sizes have them (PL72:1915-1972).
 
+use std::borrow::Cow;
+
 use super::pl72::Form;
+use crate::model::UnitModel;
 use crate::model::ladder::{BlockShape, Layout};
 use crate::model::object::pl72::{self, ChannelItem};
 use crate::model::object::{Area, Class, Object};
@@ -8,15 +11,17 @@ use crate::syntax::pl7::ast::{AssignStmt, BinOp, CallExpr, Cell, Expr, Rung, Stm
 use crate::syntax::pl7::ladder_words::Element as Word;
 use crate::target::pl72::{ASCII_DIGITS, BlockKind, Element, NEAR_BITS};
 
-#[derive(Default)]
-pub(super) struct Elements {
+pub(super) struct Elements<'m> {
+    /// What the network is lowered to has its objects.
+    model: &'m UnitModel,
     pub(super) listed: Vec<(Element, u32)>,
     pub(super) unlisted: u32,
 }
 
-impl Elements {
-    pub(super) fn of(rung: Rung<'_>) -> Self {
-        let mut elements = Self::default();
+impl<'m> Elements<'m> {
+    /// `model`: has what was met so far.
+    pub(super) fn of(rung: Rung<'_>, model: &'m UnitModel) -> Self {
+        let mut elements = Self { model, listed: Vec::new(), unlisted: 0 };
         for cell in rung.rows().flat_map(|it| it.cells()) {
             elements.add_cell(cell);
         }
@@ -37,12 +42,12 @@ impl Elements {
     fn add_cell(&mut self, cell: Cell<'_>) {
         match cell.element() {
             Some(Word::Open | Word::Closed | Word::Rising | Word::Falling) => {
-                self.add(operand(cell).and_then(|it| contact(&it)));
+                self.add(self.operand(cell).and_then(|it| contact(&it)));
             }
             Some(Word::VLink | Word::ShortCircuit) => self.add(Some(Element::VerticalLink)),
-            Some(Word::Coil | Word::SaveCoil) => self.add(operand(cell).and_then(|it| coil(&it))),
+            Some(Word::Coil | Word::SaveCoil) => self.add(self.operand(cell).and_then(|it| coil(&it))),
             Some(Word::NotCoil | Word::SetCoil | Word::ResetCoil) => {
-                self.add(operand(cell).and_then(|it| coil(&it)));
+                self.add(self.operand(cell).and_then(|it| coil(&it)));
                 self.add(Some(Element::CoilSupplement));
             }
             Some(Word::Jump) => self.add(Some(Element::Jump)),
@@ -50,7 +55,7 @@ impl Elements {
             Some(Word::Operate) => {
                 for statement in cell.operations() {
                     self.add_each(match statement {
-                        Stmt::Assign(it) => operation(&it),
+                        Stmt::Assign(it) => self.operation(&it),
                         _ => None,
                     });
                 }
@@ -61,15 +66,43 @@ impl Elements {
             Some(Word::Call | Word::Return | Word::Halt | Word::Actual) | None => self.unlisted += 1,
         }
     }
-}
 
-fn operand(cell: Cell<'_>) -> Option<Object> {
-    object(&cell.operand()?)
-}
+    fn operand(&self, cell: Cell<'_>) -> Option<Cow<'m, Object>> {
+        self.object(&cell.operand()?)
+    }
 
-fn object(expr: &Expr<'_>) -> Option<Object> {
-    let Expr::Object(it) = expr else { return None };
-    Some(pl72::parse(&it.address()).ok()?.object)
+    fn object(&self, expr: &Expr<'_>) -> Option<Cow<'m, Object>> {
+        let Expr::Object(it) = expr else { return None };
+        let address = it.address();
+        match self.model.address(&address) {
+            Some(id) => Some(Cow::Borrowed(self.model.object(id))),
+            None => Some(Cow::Owned(pl72::parse(&address).ok()?.object)),
+        }
+    }
+
+    fn form(&self, expr: &Expr<'_>) -> Form {
+        match expr {
+            Expr::Literal(_) | Expr::Unary(_) => Form::Value,
+            _ => self.object(expr).map_or(Form::Unknown, |it| Form::of(&it)),
+        }
+    }
+
+    /// PL72:1956-1971.
+    fn operation(&self, it: &AssignStmt<'_>) -> Option<(Element, u32)> {
+        match it.value()? {
+            Expr::Bin(it) => Some((
+                match it.op()? {
+                    BinOp::Add | BinOp::Sub | BinOp::And | BinOp::Or | BinOp::Xor => Element::AddOrLogic,
+                    BinOp::Mul => Element::Multiply,
+                    BinOp::Div => Element::Divide,
+                    _ => return None,
+                },
+                0,
+            )),
+            Expr::Call(it) => conversion(&it),
+            value => transfer(self.form(&value), self.form(&it.target()?)),
+        }
+    }
 }
 
 /// PL72:1919-1924. Of a TSX 17-20, `Sx,j` is taken for a fault bit as those of the others are.
@@ -126,23 +159,6 @@ fn block(cell: Cell<'_>) -> Option<Element> {
     })
 }
 
-/// PL72:1956-1971.
-fn operation(it: &AssignStmt<'_>) -> Option<(Element, u32)> {
-    match it.value()? {
-        Expr::Bin(it) => Some((
-            match it.op()? {
-                BinOp::Add | BinOp::Sub | BinOp::And | BinOp::Or | BinOp::Xor => Element::AddOrLogic,
-                BinOp::Mul => Element::Multiply,
-                BinOp::Div => Element::Divide,
-                _ => return None,
-            },
-            0,
-        )),
-        Expr::Call(it) => conversion(&it),
-        value => transfer(form(&value), form(&it.target()?)),
-    }
-}
-
 fn conversion(it: &CallExpr<'_>) -> Option<(Element, u32)> {
     let name = it.name()?.text().to_ascii_uppercase();
     let code = name.trim_end_matches(|it: char| it.is_ascii_digit());
@@ -161,13 +177,6 @@ fn conversion(it: &CallExpr<'_>) -> Option<(Element, u32)> {
         }
         _ => return None,
     })
-}
-
-fn form(expr: &Expr<'_>) -> Form {
-    match expr {
-        Expr::Literal(_) | Expr::Unary(_) => Form::Value,
-        _ => object(expr).map_or(Form::Unknown, |it| Form::of(&it)),
-    }
 }
 
 /// The row of a transfer, where there is none the one of the nearest: any transfer with an index counts as that of a word to
@@ -189,15 +198,17 @@ fn transfer(from: Form, to: Form) -> Option<(Element, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::entity::{Entity, Part, Task};
     use crate::model::work::CodeKind;
-    use crate::syntax::{self, AstNode as _, Language};
+    use crate::syntax::{self, Language};
 
     fn elements(rows: &str) -> (Vec<(Element, u32)>, u32) {
         let parse = syntax::parse(Language::Pl72Ld, &format!("RUNG L1:\n{rows}\nEND_RUNG"));
         assert_eq!(parse.errors(), [], "{rows}");
-        let rung = parse.syntax().children().find_map(Rung::cast).expect("a rung");
-        let Elements { listed, unlisted } = Elements::of(rung);
-        (listed, unlisted)
+        let entity = Entity::Pl7 { task: Task::Mast, section: None, part: Part::Main };
+        let mut model = super::super::lower(parse.syntax(), rows, entity, Language::Pl72Ld);
+        let network = model.networks.pop().expect("a network");
+        (network.elements, network.unlisted)
     }
 
     fn one(rows: &str) -> Option<(Element, u32)> {
@@ -279,8 +290,6 @@ mod tests {
 
     #[test]
     fn networks_of_a_unit() {
-        use crate::model::entity::{Entity, Part, Task};
-
         let text = "LD : PL7-2 - MAST\nRUNG L1:\n(* pump *)\nOPEN_CONTACT(B0),H_LINK(8),JUMP_COIL(L2);\nEND_RUNG\n\
                     RUNG L2:\nOPEN_CONTACT(B0),H_LINK(8),COIL(B1);\nEND_RUNG\n";
         let parse = syntax::parse(Language::Pl72Ld, text);

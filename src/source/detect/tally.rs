@@ -500,15 +500,20 @@ pub(super) fn has_pl7_object(line: &str) -> bool {
 /// has a comma.
 fn has_pl7_2_object(line: &str, signs: Signs) -> bool {
     let bytes = line.as_bytes();
-    let is_part = |it: char| it.is_ascii_alphanumeric() || it == ',';
-    // The comma stands behind letters, or a number behind them.
-    let has_form = |it: &&str| {
-        let letters = it.trim_start_matches(|it: char| it.is_ascii_alphabetic());
-        let is_name = letters.len() < it.len() && it.len() <= LONGEST_PL7_2;
-        is_name && letters.trim_start_matches(|it: char| it.is_ascii_digit()).starts_with(',')
+    let is_part = |it: &u8| it.is_ascii_alphanumeric() || *it == b',';
+    // The first comma of a word stands behind letters, or a number behind them.
+    let word_with = |comma: usize| {
+        let behind = |end: usize, is: fn(&u8) -> bool| end - bytes[..end].iter().rev().take_while(|it| is(it)).count();
+        let letters = behind(comma, u8::is_ascii_digit);
+        let start = behind(letters, u8::is_ascii_alphabetic);
+        if start == letters || bytes[..start].last().is_some_and(is_part) {
+            return None;
+        }
+        let rest = bytes[comma..].iter().take(LONGEST_PL7_2 + 1).take_while(|it| is_part(it)).count();
+        line.get(start..comma + rest).filter(|it| it.len() <= LONGEST_PL7_2)
     };
-    let mut words = line.split(|it| !is_part(it)).filter(has_form);
-    let mut is_named = || words.any(|it| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault));
+    let is_address = |it: &str| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault);
+    let is_named = || memchr::memchr_iter(b',', bytes).filter_map(word_with).any(is_address);
     let has_arrow =
         || signs.has(Signs::GREATER) && memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
     let is_transfer = || line.contains("END_BLOCK") && !line.contains(":=");
