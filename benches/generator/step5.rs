@@ -34,33 +34,30 @@ fn block(text: &mut String, random: &mut Random, number: u64) -> std::fmt::Resul
         let state = random.pick(STATES);
         let mut input = || format!("E {}.{}", random.below(64), random.below(8));
         let (first, second, third) = (input(), input(), input());
-        // Outputs are driven once: later segments write data of their block alone.
-        let flag = (number * 26 + segment) % 1600;
-        let flag = format!("M {}.{}", flag / 8, flag % 8);
+        // Each is driven in one segment of a program of 50 KB.
+        let output = (number * 26 + segment) % 1024;
+        let output = format!("A {}.{}", output / 8, output % 8);
         match random.below(6) {
             0 | 1 => writeln!(
                 text,
-                "     :U    {first}              ; {state}\n     :UN   {second}\n     :O    {third}\n     :=    {flag}"
+                "     :U    {first}              ; {state}\n     :UN   {second}\n     :O    {third}\n     :=    {output}"
             )?,
             2 => writeln!(
                 text,
-                "     :U(\n     :O    {first}\n     :O    {second}\n     :)\n     :UN   {third}\n     :=    {flag}"
+                "     :U(\n     :O    {first}\n     :O    {second}\n     :)\n     :UN   {third}\n     :=    {output}"
             )?,
             3 => writeln!(
                 text,
-                "     :U    {first}\n     :S    {flag}\n     :UN   {second}\n     :R    {flag}              ; {state}"
+                "     :U    {first}\n     :S    {output}\n     :UN   {second}\n     :R    {output}              ; {state}"
             )?,
             4 => {
                 let constant = random.below(900);
-                writeln!(text, "     :L    DW {segment}\n     :L    KF +{constant}\n     :>F\n     :=    {flag}")?;
+                writeln!(text, "     :L    DW {segment}\n     :L    KF +{constant}\n     :>F\n     :=    {output}")?;
             }
             _ => {
                 let (from, to) = (random.below(60), 100 + segment);
-                writeln!(text, "     :U    {first}              ; {state}\n     :SPB  =M{segment:03}")?;
-                writeln!(
-                    text,
-                    "     :L    EW {from}\n     :L    KH 00FF\n     :UW\n     :T    DW {to}\nM{segment:03} :NOP  0"
-                )?;
+                writeln!(text, "     :L    EW {from}              ; {state}\n     :T    DW {to}")?;
+                writeln!(text, "     :U    {first}\n     :=    {output}")?;
             }
         }
     }

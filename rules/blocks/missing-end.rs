@@ -11,10 +11,11 @@ use crate::syntax::{AstNode as _, Language, SyntaxKind};
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let Language::Step5(mnemonics) = cx.model.language else { return };
     let Some(kind) = cx.model.entity.block_kind().filter(|it| !it.is_data()) else { return };
-    let mut instrs =
-        cx.parse.syntax().descendants().filter(|it| it.kind() == SyntaxKind::Instr).filter_map(Instr::cast);
     let is_cut = cx.nodes(SyntaxKind::Error).next().is_some();
-    if !is_cut && !instrs.any(|it| op(it, mnemonics) == Some(Op::BlockEnd)) {
+    let nodes = cx.parse.syntax().descendants().filter(|it| it.kind() == SyntaxKind::Instr);
+    let instrs: Vec<Instr<'_>> = nodes.filter_map(Instr::cast).collect();
+    // It stands last, where it is not missing.
+    if !is_cut && !instrs.into_iter().rev().any(|it| op(it, mnemonics) == Some(Op::BlockEnd)) {
         sink.report(cx.model.heading(), format!("this {} has no `BE`", kind.as_str()));
     }
 }
