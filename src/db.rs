@@ -480,11 +480,30 @@ pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'
     units.filter(|&it| unit_family(db, it) == Some(program.family(db))).collect()
 }
 
-/// What the symbols of a program name. It has no places.
+/// Units that declare symbols. Programs of one file each, as the variants of a project are, share those beside them.
+#[salsa::interned]
+struct Declaring<'db> {
+    #[returns(copy)]
+    family: Family,
+    #[returns(deref)]
+    units: Vec<Unit<'db>>,
+}
+
 #[salsa::tracked]
-pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> SymbolTable {
-    let declaring = program_units(db, program).iter().filter(|it| it.language(db).declares_symbols());
-    SymbolTable::new(program.family(db), declaring.map(|&unit| &**facts(db, unit)))
+fn declaring<'db>(db: &'db dyn Db, program: Program<'db>) -> Declaring<'db> {
+    let units = program_units(db, program).iter().copied();
+    Declaring::new(db, program.family(db), units.filter(|it| it.language(db).declares_symbols()).collect::<Vec<_>>())
+}
+
+/// What symbols name. It has no places.
+#[salsa::tracked]
+fn symbols_of<'db>(db: &'db dyn Db, declaring: Declaring<'db>) -> SymbolTable {
+    SymbolTable::new(declaring.family(db), declaring.units(db).iter().map(|&unit| &**facts(db, unit)))
+}
+
+/// What the symbols of a program name.
+pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> &'db SymbolTable {
+    symbols_of(db, *declaring(db, program))
 }
 
 /// Findings of the rules that look at a program. A site's unit is an index into [`program_units`].
