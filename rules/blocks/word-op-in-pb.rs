@@ -4,18 +4,16 @@ use rowan::TextRange;
 
 use crate::lint::{Sink, UnitCx};
 use crate::model::entity::BlockKind;
-use crate::syntax::awl::ast::Instr;
+use crate::syntax::Language;
 use crate::syntax::awl::instruction::{Conversion, Op};
 use crate::syntax::step5::instruction::op;
-use crate::syntax::{AstNode as _, Language, SyntaxKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let Language::Step5(mnemonics) = cx.model.language else { return };
     if cx.model.entity.block_kind() != Some(BlockKind::Pb) {
         return;
     }
-    let instrs = cx.parse.syntax().descendants().filter(|it| it.kind() == SyntaxKind::Instr).filter_map(Instr::cast);
-    let mut found = instrs.filter_map(|it| Some((it.mnemonic()?, kind(op(it, mnemonics)?)?)));
+    let mut found = cx.instrs().filter_map(|it| Some((it.mnemonic()?, kind(op(it, mnemonics)?)?)));
     let Some((first, what)) = found.next() else { return };
     sink.report(first.range, format!("`{}` is {what}, which program blocks do not have", first.text))
         .related_all(found.map(|(it, what)| (it.range, format!("`{}` is {what}", it.text))));

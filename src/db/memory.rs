@@ -177,10 +177,8 @@ impl Step {
 
 impl State {
     fn get_ready(&mut self, family: Family) {
-        if let Kept::Asked(asked) = &self.kept {
-            let known = Kept::Asked(asked.clone()).known(family, &self.facts, &self.ran);
-            self.kept = Kept::Known(known);
-        }
+        let kept = std::mem::replace(&mut self.kept, Kept::Asked(AskedFor::default()));
+        self.kept = Kept::Known(kept.known(family, &self.facts, &self.ran));
     }
 
     /// Goes to a program in which some units have moved.

@@ -13,7 +13,8 @@ use crate::analysis::sequences::Sequences;
 use crate::model::UnitModel;
 use crate::model::object::{Class, Type};
 use crate::model::pl7_kinds::Kinds;
-use crate::syntax::{Parse, SyntaxElement, SyntaxKind, SyntaxNode};
+use crate::syntax::awl::ast::Instr;
+use crate::syntax::{AstNode as _, Parse, SyntaxElement, SyntaxKind, SyntaxNode};
 use crate::target::Target;
 
 /// Nodes with their parents, in the order of the text, and comments.
@@ -84,6 +85,11 @@ impl<'a> UnitCx<'a> {
     /// As [`Self::nodes`], each behind the node that it is a child of.
     pub fn nodes_in(&self, kind: SyntaxKind) -> impl Iterator<Item = (SyntaxNode<'a>, SyntaxNode<'a>)> {
         self.index().of(kind)
+    }
+
+    /// The instructions of a statement list, in the order of the text.
+    pub fn instrs(&self) -> impl Iterator<Item = Instr<'a>> {
+        self.parse.syntax().descendants().filter_map(Instr::cast)
     }
 
     /// The comments that are closed, in the order of the text.
