@@ -43,11 +43,14 @@ fn found(db: &RootDatabase, files: &[SourceFile]) -> Vec<String> {
     all.chain(db::configuration_findings(db).iter().map(line)).collect()
 }
 
-/// One edit as people make them: mostly such that the text goes on to mean something.
-fn edited(text: &str, numbers: &mut Numbers) -> String {
+/// One edit as people make them: mostly such that the text goes on to mean something. `units`: where they start.
+fn edited(text: &str, units: &[usize], numbers: &mut Numbers) -> String {
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
     let line = numbers.below(lines.len());
-    match numbers.below(7) {
+    if lines.is_empty() {
+        return text.to_owned();
+    }
+    match numbers.below(9) {
         // Another number: most are addresses.
         0..=2 => {
             let digits: Vec<usize> =
@@ -63,11 +66,20 @@ fn edited(text: &str, numbers: &mut Numbers) -> String {
             lines.concat()
         }
         // A character that mostly breaks a statement, or the heading of a unit.
-        5 => {
-            let places: Vec<usize> = text.char_indices().map(|it| it.0).collect();
+        kind @ 5..=6 => {
+            let unit = if kind == 6 { units.get(numbers.below(units.len())).copied() } else { None };
+            let first = unit.unwrap_or_default();
+            let length = if unit.is_some() { 16 } else { usize::MAX };
+            let places: Vec<usize> = text[first..].char_indices().map(|it| first + it.0).take(length).collect();
             let at = places.get(numbers.below(places.len())).copied().unwrap_or_default();
             let character = ["(", ";", "N", "=", " "][numbers.below(5)];
             format!("{}{character}{}", &text[..at], &text[at..])
+        }
+        // A unit goes.
+        7 => {
+            let at = numbers.below(units.len());
+            let end = units.get(at + 1).copied().unwrap_or(text.len());
+            units.get(at).map_or_else(|| text.to_owned(), |start| format!("{}{}", &text[..*start], &text[end..]))
         }
         _ => {
             let mut lines = lines;
@@ -95,7 +107,8 @@ fn edit_at_random(folder: &Path, seed: u64, edits: usize) {
             other => {
                 undo.extend(other);
                 undo.push((at, texts[at].clone()));
-                (at, edited(&texts[at], &mut numbers))
+                let units: Vec<usize> = db::layout(&db, files[at]).iter().map(|it| it.1 as usize).collect();
+                (at, edited(&texts[at], &units, &mut numbers))
             }
         };
         db.set_text(files[at], text.as_str());

@@ -374,12 +374,6 @@ impl UnitFacts {
         let is_same_symbol =
             |(a, b): (&FactSymbol, &FactSymbol)| (&a.name, &a.object, &a.ty) == (&b.name, &b.object, &b.ty);
         let condition = |it: &Self| Some(it.objects.get(it.condition? as usize)?.object.clone());
-        // Data is laid out by what other blocks declare, and code is placed by what it is.
-        let is_code = |it: &Self| match &it.entity {
-            Entity::Block { kind, .. } => matches!(kind, BlockKind::Fc | BlockKind::Ob),
-            Entity::Pl7 { part, .. } => matches!(part, Part::Subroutine(_)),
-            _ => false,
-        };
         let is_same = self.language == old.language
             && self.instance_of == old.instance_of
             && self.opens_instance == old.opens_instance
@@ -390,13 +384,37 @@ impl UnitFacts {
             && apart::commands(self) == apart::commands(old)
             && condition(self) == condition(old);
         let is_named_same = self.entity == old.entity && self.declared == old.declared;
-        if !(is_same && (is_named_same || is_code(self) && is_code(old))) {
+        if !(is_same && (is_named_same || self.is_code() && old.is_code())) {
             return Difference::Unknown;
         }
         let calls_same = self.calls.len() == old.calls.len()
             && self.calls.iter().zip(&old.calls).all(is_same_call)
             && self.exclusive_calls == old.exclusive_calls;
         if is_named_same && calls_same { Difference::Uses } else { Difference::Calls }
+    }
+
+    /// Whether nothing but calls places the unit: data is laid out by what other blocks declare, and other code is placed by
+    /// what it is.
+    fn is_code(&self) -> bool {
+        match &self.entity {
+            Entity::Block { kind, .. } => {
+                matches!(kind, BlockKind::Fc | BlockKind::Ob | BlockKind::Pb | BlockKind::Sb)
+            }
+            Entity::Pl7 { part, .. } => matches!(part, Part::Subroutine(_)),
+            _ => false,
+        }
+    }
+
+    /// Whether a program without the unit is another one by its uses and calls alone.
+    pub(super) fn is_code_alone(&self) -> bool {
+        self.is_code()
+            && self.instance_of.is_none()
+            && !self.opens_instance
+            && self.symbols.is_empty()
+            && self.chart.is_none()
+            && self.interface.is_none()
+            && apart::commands(self).is_empty()
+            && self.condition.is_none()
     }
 
     /// Says under which condition the section runs. The bit is read before the unit runs.

@@ -18,6 +18,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Site;
 use super::facts::{self, FactObject, UnitFacts, Use};
+use super::outline::{Moved, Numbers};
 use super::program::{Modes, ObjectUses, ProgramIndex, Skeleton, actual_mode};
 use super::sequences::gate::{Assigned, Told};
 use super::unseen::{Access, Summary};
@@ -63,6 +64,12 @@ struct Held {
 }
 
 impl Held {
+    /// Of a unit that has not entered.
+    fn nothing(facts: &Arc<UnitFacts>) -> Self {
+        let (ids, ends, uses, together) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { facts: facts.clone(), ids, ends, uses, together, addressed: Modes::default(), told: None }
+    }
+
     /// The uses of an object, as indices into those of the unit, in order.
     fn indices_of(&self, object: u32) -> &[u32] {
         let at = object as usize;
@@ -168,30 +175,24 @@ impl Islands {
 
     /// Takes new facts of the units that have changed, and looks at what moved with them. Returns the objects that all these
     /// use or used.
-    pub fn update(
-        &mut self,
-        skeleton: &Skeleton<'_>,
-        facts: &[Arc<UnitFacts>],
-        changed: &[u32],
-        moved: &[u32],
-    ) -> FxHashSet<u32> {
+    pub fn update(&mut self, skeleton: &Skeleton<'_>, facts: &[Arc<UnitFacts>], by: &Moved) -> FxHashSet<u32> {
         let mut objects = FxHashSet::default();
-        for &unit in changed {
+        if !by.numbers.are_same() {
+            by.numbers.gone().for_each(|it| self.leave(it, &mut objects));
+            self.renumber(facts, by.numbers);
+        }
+        for &unit in &by.changed {
             let Some(facts) = facts.get(unit as usize) else { continue };
             let held = self.hold(skeleton, unit, facts);
-            let Some(old) = self.units.get_mut(unit as usize).map(|it| std::mem::replace(it, held)) else { continue };
-            for (_, id) in old.used() {
-                objects.insert(id);
-                self.objects[id as usize].users.retain(|it| it.unit != unit);
-            }
-            if let Some(told) = &old.told {
-                self.assigned.remove(unit, told);
+            self.leave(unit, &mut objects);
+            if let Some(old) = self.units.get_mut(unit as usize) {
+                *old = held;
             }
             self.enter(skeleton, unit);
         }
-        for &unit in moved {
+        for &unit in &by.units {
             let Some(held) = self.units.get_mut(unit as usize) else { continue };
-            if !changed.contains(&unit) {
+            if !by.changed.contains(&unit) {
                 held.tie(skeleton, unit);
                 for (at, id) in held.used() {
                     let users = self.objects[id as usize].users.iter_mut();
@@ -203,6 +204,19 @@ impl Islands {
         }
         objects.iter().for_each(|&it| self.set_modes(it));
         objects
+    }
+
+    /// Units that are gone have left.
+    fn renumber(&mut self, facts: &[Arc<UnitFacts>], numbers: Numbers) {
+        let is_there = |it: u32| (it as usize) < self.units.len();
+        let gone = numbers.gone().filter(|it| is_there(*it)).count();
+        let start = numbers.gone().start as usize;
+        let come = numbers.come().filter_map(|it| facts.get(it as usize)).map(Held::nothing);
+        self.units.splice(start..start + gone, come);
+        let now = |it: &mut u32| *it = numbers.now(*it).unwrap_or(NONE);
+        self.objects.iter_mut().flat_map(|it| &mut it.users).for_each(|it| now(&mut it.unit));
+        self.units.iter_mut().filter_map(|it| it.told.as_mut()).for_each(|it| it.renumber(now));
+        self.assigned.renumber(now);
     }
 
     fn hold(&mut self, skeleton: &Skeleton<'_>, unit: u32, facts: &Arc<UnitFacts>) -> Held {
@@ -270,6 +284,18 @@ impl Islands {
         }
         if let Some(told) = &held.told {
             self.assigned.insert(unit, told);
+        }
+    }
+
+    /// Takes out a unit; `objects` takes those that it used.
+    fn leave(&mut self, unit: u32, objects: &mut FxHashSet<u32>) {
+        let Some(held) = self.units.get(unit as usize) else { return };
+        for (_, id) in held.used() {
+            objects.insert(id);
+            self.objects[id as usize].users.retain(|it| it.unit != unit);
+        }
+        if let Some(told) = &held.told {
+            self.assigned.remove(unit, told);
         }
     }
 

@@ -1,6 +1,7 @@
 //! How the units of a program run one another, compared from edit to edit.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::facts::{Difference, UnitFacts};
@@ -23,13 +24,71 @@ struct Unit {
     targets: Box<[Option<u32>]>,
 }
 
-/// What an edit touches.
+/// What an edit touches. Units go by their numbers after it.
 #[derive(Debug)]
 pub struct Moved {
-    /// Units whose facts are others.
+    pub numbers: Numbers,
+    /// Units whose facts are others, and those that were not there.
     pub changed: Vec<u32>,
-    /// Units of whose objects something else may hold, those with other facts among them. Sorted.
+    /// Units of whose objects something else may hold, the changed ones among them. Sorted.
     pub units: Vec<u32>,
+}
+
+/// Which unit of a program is which after an edit, which may break or mend the headings of units.
+#[derive(Debug, Clone, Copy)]
+pub struct Numbers {
+    /// The units before this one have the numbers that they had.
+    at: u32,
+    /// So many are not there any more, then so many are new. One of both is 0.
+    gone: u32,
+    come: u32,
+}
+
+impl Numbers {
+    /// Of a unit that is not there any more.
+    const GONE: u32 = u32::MAX;
+
+    fn new(old: &[Arc<UnitFacts>], new: &[Arc<UnitFacts>]) -> Self {
+        fn same<'f>(pairs: impl Iterator<Item = (&'f Arc<UnitFacts>, &'f Arc<UnitFacts>)>) -> usize {
+            pairs.take_while(|(a, b)| Arc::ptr_eq(a, b)).count()
+        }
+        let start = same(old.iter().zip(new));
+        let end = same(old.iter().skip(start).rev().zip(new.iter().skip(start).rev()));
+        let (gone, come) = (old.len() - start - end, new.len() - start - end);
+        let kept = gone.min(come);
+        let number = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
+        Self { at: number(start + kept), gone: number(gone - kept), come: number(come - kept) }
+    }
+
+    pub fn are_same(self) -> bool {
+        self.gone == self.come
+    }
+
+    /// Units that are not there any more, by the numbers that they had.
+    pub fn gone(self) -> Range<u32> {
+        self.at..self.at + self.gone
+    }
+
+    /// Units that were not there, by their numbers now.
+    pub fn come(self) -> Range<u32> {
+        self.at..self.at + self.come
+    }
+
+    /// The number now of a unit that had this one; `None` when it is not there any more.
+    pub fn now(self, old: u32) -> Option<u32> {
+        match old.checked_sub(self.at) {
+            None => Some(old),
+            Some(beyond) => beyond.checked_sub(self.gone)?.checked_add(self.at + self.come),
+        }
+    }
+
+    fn before(self, now: u32) -> Option<u32> {
+        Self { gone: self.come, come: self.gone, ..self }.now(now)
+    }
+
+    fn target(self, old: Option<u32>) -> Option<u32> {
+        old.map(|it| self.now(it).unwrap_or(Self::GONE))
+    }
 }
 
 impl Outline {
@@ -54,16 +113,29 @@ impl Outline {
 
     /// From this outline, with the facts that it is of, to another one: what moves; `None` when it may be anything.
     pub fn moved(&self, old: &[Arc<UnitFacts>], new: &Self, facts: &[Arc<UnitFacts>]) -> Option<Moved> {
-        if self.units.len() != new.units.len() || old.len() != facts.len() {
+        let numbers = Numbers::new(old, facts);
+        let gone = numbers.gone().filter_map(|it| old.get(it as usize));
+        let come = numbers.come().filter_map(|it| facts.get(it as usize));
+        if !gone.chain(come).all(|it| it.is_code_alone()) {
             return None;
         }
+        let before = |it: u32| Some(numbers.before(it)? as usize);
+        let targets = |unit: Option<usize>| {
+            let it = unit.and_then(|it| self.units.get(it));
+            it.into_iter().flat_map(|it| it.targets.iter().map(|it| numbers.target(*it)))
+        };
         let mut changed = Vec::new();
         let mut has_moved = vec![false; facts.len()];
         // Where calls lead of which something is new: findings in the code behind them may name it.
-        let mut behind: VecDeque<u32> = VecDeque::new();
-        for (unit, (a, b)) in (0..).zip(old.iter().zip(facts)) {
+        let mut behind: VecDeque<u32> = numbers.gone().flat_map(|it| targets(Some(it as usize))).flatten().collect();
+        for (unit, (is, b)) in (0..).zip(new.units.iter().zip(facts)) {
             let at = unit as usize;
-            let (was, is) = (self.units.get(at)?, new.units.get(at)?);
+            let Some((was, a)) = before(unit).and_then(|it| Some((self.units.get(it)?, old.get(it)?))) else {
+                changed.push(unit);
+                has_moved[at] = true;
+                behind.extend(is.targets.iter().flatten());
+                continue;
+            };
             let runs = |it: &Unit| (it.reached, it.sure);
             has_moved[at] |= runs(was) != runs(is) || was.contexts != is.contexts;
             let difference = if Arc::ptr_eq(a, b) || a == b { Difference::None } else { b.difference(a) };
@@ -76,44 +148,46 @@ impl Outline {
                 }
             }
             let all = difference == Difference::Calls;
-            if difference == Difference::None && was.targets == is.targets {
+            let led = || targets(before(unit));
+            if difference == Difference::None && led().eq(is.targets.iter().copied()) {
                 continue;
             }
             has_moved[at] = true;
-            let pairs = was.targets.iter().zip(&is.targets).zip(a.calls.iter().zip(&b.calls));
-            for ((from, to), (x, y)) in pairs {
+            for ((from, &to), (x, y)) in led().zip(&is.targets).zip(a.calls.iter().zip(&b.calls)) {
                 if all || from != to || x.anchor != y.anchor {
-                    behind.extend(from.iter().chain(to));
+                    behind.extend(from.into_iter().chain(to));
                 }
             }
             if was.targets.len() != is.targets.len() {
-                behind.extend(was.targets.iter().chain(&is.targets).flatten());
+                behind.extend(led().chain(is.targets.iter().copied()).flatten());
             }
         }
         // What a unit is called and declares is read where it is called.
-        for (at, (was, is)) in self.units.iter().zip(&new.units).enumerate() {
-            let is_other = |it: &u32| {
-                let facts = old.get(*it as usize).zip(facts.get(*it as usize));
-                facts.is_some_and(|(a, b)| !Arc::ptr_eq(a, b) && a.declared != b.declared)
-            };
-            has_moved[at] |= was.targets.iter().chain(&is.targets).flatten().any(is_other);
+        let is_other = |it: u32| {
+            let facts = before(it).and_then(|was| Some((old.get(was)?, facts.get(it as usize)?)));
+            facts.is_some_and(|(a, b)| !Arc::ptr_eq(a, b) && a.declared != b.declared)
+        };
+        for (unit, is) in (0..).zip(&new.units) {
+            let called = targets(before(unit)).chain(is.targets.iter().copied()).flatten();
+            has_moved[unit as usize] |= called.into_iter().any(is_other);
         }
         let mut seen = vec![false; facts.len()];
         while let Some(unit) = behind.pop_front() {
-            let at = unit as usize;
-            if std::mem::replace(seen.get_mut(at)?, true) {
+            // What is not there any more has been followed.
+            let Some(seen) = seen.get_mut(unit as usize) else { continue };
+            if std::mem::replace(seen, true) {
                 continue;
             }
-            has_moved[at] = true;
-            for it in [self, new] {
-                behind.extend(it.units.get(at)?.targets.iter().flatten());
-            }
+            has_moved[unit as usize] = true;
+            let is = new.units.get(unit as usize)?;
+            behind.extend(targets(before(unit)).chain(is.targets.iter().copied()).flatten());
         }
-        let still = |it: &&u32| !has_moved.get(**it as usize).copied().unwrap_or(true);
-        if !self.sequence.iter().filter(still).eq(new.sequence.iter().filter(still)) {
+        let still = |it: &u32| !has_moved.get(*it as usize).copied().unwrap_or(true);
+        let was = self.sequence.iter().filter_map(|&it| numbers.now(it));
+        if !was.filter(still).eq(new.sequence.iter().copied().filter(still)) {
             return None;
         }
         let units = (0..).zip(&has_moved).filter(|it| *it.1).map(|it| it.0).collect();
-        Some(Moved { changed, units })
+        Some(Moved { numbers, changed, units })
     }
 }

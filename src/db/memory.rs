@@ -11,7 +11,7 @@ use super::Ran;
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::islands::Islands;
-use crate::analysis::outline::{Moved, Outline};
+use crate::analysis::outline::{Moved, Numbers, Outline};
 use crate::analysis::program::{ProgramIndex, Skeleton};
 use crate::analysis::unseen::{AskedFor, Questions, Summary};
 use crate::lint::Finding;
@@ -183,10 +183,13 @@ impl State {
 
     /// Goes to a program in which some units have moved.
     fn follow(self, facts: &[Arc<UnitFacts>], by: Moved, program: &ProgramIndex<'_>) -> From {
-        let Self { ran, asked_of_all, .. } = self;
+        let Self { mut ran, asked_of_all, .. } = self;
         let mut known = self.kept.known(program.family, &self.facts, &ran);
         let islands = Arc::make_mut(&mut known.islands);
-        let mut moved = islands.update(program, facts, &by.changed, &by.units);
+        let mut moved = islands.update(program, facts, &by);
+        if !by.numbers.are_same() {
+            ran.findings = renumber(ran.findings, &mut known.subjects, by.numbers);
+        }
         program.know(known.islands.clone());
         let summary = program.summary();
         let changed = self.summary.difference(&summary);
@@ -203,6 +206,31 @@ impl State {
         islands.close(&mut moved);
         From { ran, asked_of_all, known, units: by.units, moved: Some(moved) }
     }
+}
+
+/// Findings about a program in which units have other numbers. Those that name a unit which is not there any more go: they
+/// are about objects that it used, or about what its calls led to.
+fn renumber(
+    findings: Vec<Arc<Finding<Site>>>,
+    subjects: &mut Vec<Vec<u32>>,
+    numbers: Numbers,
+) -> Vec<Arc<Finding<Site>>> {
+    let now = |it: Site| {
+        if it.is_configured() { Some(it) } else { Some(Site { unit: numbers.now(it.unit)?, ..it }) }
+    };
+    let renumbered = |it: Arc<Finding<Site>>| {
+        if it.names(|it| now(*it).is_none()) {
+            None
+        } else if it.names(|it| now(*it) != Some(*it)) {
+            Arc::unwrap_or_clone(it).map(now).map(Arc::new)
+        } else {
+            Some(it)
+        }
+    };
+    let all = findings.into_iter().zip(std::mem::take(subjects));
+    let (findings, kept) = all.filter_map(|(it, of)| Some((renumbered(it)?, of))).unzip();
+    *subjects = kept;
+    findings
 }
 
 impl From {
@@ -302,6 +330,16 @@ mod tests {
         assert_eq!(moved[2], names(&[]));
         assert_eq!(moved[3], there);
         assert_eq!(moved[4], there);
+    }
+
+    #[test]
+    fn a_unit_that_comes_or_goes_leaves_the_others() {
+        let without = program("L EW 4\nT AW 4\n");
+        let with = format!("FUNCTION FC 4 : VOID\nBEGIN\nU M 7.0\n= A 5.0\nU M 5.0\n= A 5.1\nEND_FUNCTION\n{without}");
+        let moved = judged(&[&without, &with, &without, &with]);
+        let names = |it: &[&str]| Some(it.iter().map(|it| (*it).to_owned()).collect::<Vec<_>>());
+        let there = names(&["M5.0", "M7.0"]);
+        assert_eq!(moved, [None, there.clone(), there.clone(), there]);
     }
 
     #[test]

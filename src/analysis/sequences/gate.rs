@@ -21,6 +21,14 @@ enum Bit {
     Open,
 }
 
+impl Bit {
+    fn renumber(&mut self, now: impl Fn(&mut u32)) {
+        if let Self::Own(unit, _) = self {
+            now(unit);
+        }
+    }
+}
+
 /// A bit that is asked for.
 #[derive(Debug, Clone, Copy)]
 struct Asked {
@@ -86,6 +94,13 @@ impl Told {
             assigned: assigned.collect(),
         })
     }
+
+    pub(in crate::analysis) fn renumber(&mut self, now: impl Fn(&mut u32)) {
+        for (a, b) in self.handed.iter_mut().chain(&mut self.assigned) {
+            a.renumber(&now);
+            b.bit.renumber(&now);
+        }
+    }
 }
 
 fn stores(it: &Ask) -> bool {
@@ -109,6 +124,20 @@ impl Assigned {
                 list.retain(|it| it.0 != unit);
             }
         }
+    }
+
+    pub(in crate::analysis) fn renumber(&mut self, now: impl Fn(&mut u32)) {
+        let renumbered = std::mem::take(&mut self.0).into_iter().filter(|it| !it.1.is_empty());
+        self.0 = renumbered
+            .map(|(mut bit, mut list)| {
+                bit.renumber(&now);
+                for (unit, asked) in &mut list {
+                    now(unit);
+                    asked.bit.renumber(&now);
+                }
+                (bit, list)
+            })
+            .collect();
     }
 }
 
