@@ -384,16 +384,17 @@ impl UnitFacts {
             && apart::commands(self) == apart::commands(old)
             && condition(self) == condition(old);
         let is_named_same = self.entity == old.entity && self.declared == old.declared;
-        if !(is_same && (is_named_same || self.is_code() && old.is_code())) {
+        let is_code = is_same && self.is_code() && old.is_code() || self.is_code_alone() && old.is_code_alone();
+        if !(is_same && is_named_same || is_code) {
             return Difference::Unknown;
         }
         let calls_same = self.calls.len() == old.calls.len()
             && self.calls.iter().zip(&old.calls).all(is_same_call)
             && self.exclusive_calls == old.exclusive_calls;
-        if is_named_same && calls_same { Difference::Uses } else { Difference::Calls }
+        if is_same && is_named_same && calls_same { Difference::Uses } else { Difference::Calls }
     }
 
-    /// Whether nothing but calls places the unit: data is laid out by what other blocks declare, and other code is placed by
+    /// Whether nothing but calls places the unit, if it is any code: data is laid out by what other blocks declare, and other code is placed by
     /// what it is.
     fn is_code(&self) -> bool {
         match &self.entity {
@@ -401,6 +402,7 @@ impl UnitFacts {
                 matches!(kind, BlockKind::Fc | BlockKind::Ob | BlockKind::Pb | BlockKind::Sb)
             }
             Entity::Pl7 { part, .. } => matches!(part, Part::Subroutine(_)),
+            Entity::Container => true,
             _ => false,
         }
     }

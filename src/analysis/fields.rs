@@ -18,8 +18,14 @@ use crate::model::unit::{Mode, Section};
 
 /// The layouts of all blocks that the units declare.
 pub fn layouts<'a>(units: impl IntoIterator<Item = &'a UnitFacts>) -> Layouts {
-    let blocks = units.into_iter().filter_map(|it| Some((it.entity.name()?, it.declared.as_deref()?)));
+    let blocks = units.into_iter().filter_map(|it| Some((it.entity.name()?, lasting(it)?)));
     Layouts::new(blocks)
+}
+
+/// What a unit declares that lies in a data block: functions and organization blocks keep nothing.
+fn lasting(facts: &UnitFacts) -> Option<&DataType> {
+    let keeps = !matches!(facts.entity.block_kind(), Some(BlockKind::Fc | BlockKind::Ob));
+    facts.declared.as_deref().filter(|_| keeps)
 }
 
 /// What a unit declares, and into which data blocks it looks.
@@ -42,8 +48,8 @@ impl Declaration {
         let mut looks_into: Vec<BlockName> = objects.collect();
         looks_into.sort_unstable();
         looks_into.dedup();
-        let (name, declared) = (facts.entity.name().cloned(), facts.declared.clone());
-        Self { name, declared, instance_of: facts.instance_of.clone(), looks_into }
+        let declared = lasting(facts).cloned().map(Box::new);
+        Self { name: facts.entity.name().cloned(), declared, instance_of: facts.instance_of.clone(), looks_into }
     }
 }
 

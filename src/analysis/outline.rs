@@ -44,13 +44,17 @@ pub struct Numbers {
     come: u32,
 }
 
+fn is_same(a: &Arc<UnitFacts>, b: &Arc<UnitFacts>) -> bool {
+    Arc::ptr_eq(a, b) || a == b
+}
+
 impl Numbers {
     /// Of a unit that is not there any more.
     const GONE: u32 = u32::MAX;
 
     fn new(old: &[Arc<UnitFacts>], new: &[Arc<UnitFacts>]) -> Self {
         fn same<'f>(pairs: impl Iterator<Item = (&'f Arc<UnitFacts>, &'f Arc<UnitFacts>)>) -> usize {
-            pairs.take_while(|(a, b)| Arc::ptr_eq(a, b)).count()
+            pairs.take_while(|(a, b)| is_same(a, b)).count()
         }
         let start = same(old.iter().zip(new));
         let end = same(old.iter().skip(start).rev().zip(new.iter().skip(start).rev()));
@@ -138,7 +142,7 @@ impl Outline {
             };
             let runs = |it: &Unit| (it.reached, it.sure);
             has_moved[at] |= runs(was) != runs(is) || was.contexts != is.contexts;
-            let difference = if Arc::ptr_eq(a, b) || a == b { Difference::None } else { b.difference(a) };
+            let difference = if is_same(a, b) { Difference::None } else { b.difference(a) };
             match difference {
                 Difference::None => {}
                 Difference::Unknown => return None,

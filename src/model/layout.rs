@@ -321,13 +321,13 @@ impl Shape {
 }
 
 /// The layouts of named types, as far as a program declares them.
-#[derive(Debug, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Layouts {
     known: FxHashMap<BlockName, Option<Arc<Layout>>>,
 }
 
 impl Layouts {
-    /// `blocks`: what each data block, function block and UDT declares.
+    /// `blocks`: what each data block, function block and UDT declares; functions keep nothing.
     pub fn new<'a>(blocks: impl IntoIterator<Item = (&'a BlockName, &'a DataType)>) -> Self {
         let blocks: FxHashMap<&BlockName, &DataType> = blocks.into_iter().collect();
         let mut layouts = Self::default();
@@ -419,14 +419,22 @@ impl Layouts {
 
     /// The local data of a block: its temporary variables.
     pub fn of_temporary(fields: &[Field]) -> Layout {
-        let fields: Vec<Field> = fields.iter().map(|it| Field { section: Section::Static, ..it.clone() }).collect();
-        Self::of_fields(&fields)
+        Self::of_fields(&as_static(fields))
     }
 
-    /// The layout of what one block declares, with the named types that are known.
+    /// The layout of what one block declares, with no named types.
     pub fn of_fields(fields: &[Field]) -> Layout {
         Self::default().layout(&FxHashMap::default(), fields, 0)
     }
+
+    /// What a block knows by name, whether it lasts or not, with the named types that are known. No place in it says anything.
+    pub fn of_names(&self, fields: &[Field]) -> Layout {
+        self.clone().layout(&FxHashMap::default(), &as_static(fields), 0)
+    }
+}
+
+fn as_static(fields: &[Field]) -> Vec<Field> {
+    fields.iter().map(|it| Field { section: Section::Static, ..it.clone() }).collect()
 }
 
 /// Bits of one row follow each other; rows begin with a byte, elements of other types with theirs.

@@ -321,6 +321,17 @@ NETWORK
       U     A 4.0;
       =     \"Lamp\";
 END_ORGANIZATION_BLOCK
+FUNCTION FC 1 : VOID
+VAR_TEMP
+  scratch : UDT 1 ;
+END_VAR
+BEGIN
+NETWORK
+      L     MW 10;
+      T     #scratch.hours;
+      L     #scratch.hours;
+      T     MW 12;
+END_FUNCTION
 ";
 
 #[test]
@@ -354,12 +365,15 @@ fn symbols_of_blocks_and_fields_lead_to_what_they_name() {
     assert!(text.contains("field `speed : INT`") && text.contains("- OB100: 0 reads, 1 write"), "{text}");
     let text = shown("#state.on", 2);
     assert!(text.contains("component `on` of type `BOOL` of `state`, static of type `UDT1`"), "{text}");
+    let text = shown("#scratch.hours", 2);
+    assert!(text.contains("component `hours` of type `INT` of `scratch`, temporary of type `UDT1`"), "{text}");
     let text = shown("state : UDT", 1);
     assert!(text.contains("static of type `UDT1`") && !text.contains("not used"), "{text}");
     let text = shown("A 4.0", 1);
     assert!(text.contains("symbol `\"Lamp\"`: red"), "{text}");
     let open =
         BLOCKS.replace("      L     #state.hours;", "      L     #state.\n      L     \"Data\".\n      =     \"La");
+    let open = open.replace("      L     #scratch.hours;", "      L     #scratch.");
     client.open("a.awl", &open);
     let mut offered = |needle: &str| {
         let params = at(&client, "a.awl", &open, needle, needle.len());
@@ -367,6 +381,7 @@ fn symbols_of_blocks_and_fields_lead_to_what_they_name() {
     };
     assert_eq!(labels(&offered("L     #state.")), ["on", "hours"]);
     assert_eq!(labels(&offered("L     \"Data\".")), ["speed", "left"]);
+    assert_eq!(labels(&offered("L     #scratch.")), ["on", "hours"]);
     let answer = offered("=     \"La");
     let item = answer["items"].as_array().unwrap().iter().find(|it| it["label"] == "\"Lamp\"").unwrap();
     assert_eq!(range(&item["textEdit"]["range"]), "31:13-31:16", "the quote is part of the symbol");

@@ -1,5 +1,7 @@
 //! `textDocument/completion`: words that may stand at a position.
 
+use std::sync::Arc;
+
 use lsp_types::{
     CompletionItem, CompletionItemKind, CompletionItemTextEdit, CompletionList, CompletionParams, CompletionRequest,
     CompletionResponse, TextEdit,
@@ -13,6 +15,7 @@ use crate::analysis::symbols::SymbolTable;
 use crate::db;
 use crate::model::dfb::Role;
 use crate::model::entity::{BlockKind, BlockName, Entity, Family};
+use crate::model::layout::Field;
 use crate::model::object::{Class, step7};
 use crate::model::symbols::key;
 use crate::model::unit::{Section, StatementKind};
@@ -75,10 +78,10 @@ impl Handle for Handler {
             Typed::in_words(before, language)
         };
         let mut found = Found { items: Vec::new(), seen: FxHashSet::default(), of_owner: false };
-        if let Some((program, unit)) = cursor.program() {
+        if let Some((program, _)) = cursor.program() {
             let program = InProgram::new(it, program);
             let index = program.index();
-            let own = index.units.get(unit as usize).and_then(|it| it.entity.name());
+            let own = cursor.model.fields();
             let table = db::symbol_table(it.db, program.program);
             let is_member = typed.owner.is_some_and(|owner| found.members(owner, own, table, &index));
             if !is_member {
@@ -283,8 +286,8 @@ impl Found {
         }
     }
 
-    /// What a name has behind a dot, in a block of the name `own`. `false` when it has nothing that is known.
-    fn members(&mut self, owner: &str, own: Option<&BlockName>, table: &SymbolTable, index: &ProgramIndex<'_>) -> bool {
+    /// What a name has behind a dot, in a block that declares `own`. `false` when it has nothing that is known.
+    fn members(&mut self, owner: &str, own: &[Field], table: &SymbolTable, index: &ProgramIndex<'_>) -> bool {
         if index.family == Family::Step7 {
             self.fields(owner, own, table, index);
         } else {
@@ -302,10 +305,10 @@ impl Found {
     }
 
     /// The fields of a data block, or of a variable that is a structure.
-    fn fields(&mut self, owner: &str, own: Option<&BlockName>, table: &SymbolTable, index: &ProgramIndex<'_>) {
-        let (block, path) = if let Some(path) = owner.strip_prefix('#') {
-            let Some(name) = own else { return };
-            (name.clone(), path.to_owned())
+    fn fields(&mut self, owner: &str, own: &[Field], table: &SymbolTable, index: &ProgramIndex<'_>) {
+        let layouts = index.layouts();
+        let (layout, path) = if let Some(path) = owner.strip_prefix('#') {
+            (Some(Arc::new(layouts.of_names(own))), path.to_owned())
         } else {
             // A field of the block, whatever it is called, leads to the block.
             let compact: String = if owner.starts_with(['"', '«']) {
@@ -316,9 +319,9 @@ impl Found {
             let object = step7::parse_either(&format!("{compact}.field"));
             let Some((block, path)) = object.ok().and_then(|it| step7::field(&it)) else { return };
             let path = path.strip_suffix("field").unwrap_or_default().trim_end_matches('.').to_owned();
-            (table.block(&block).unwrap_or(block), path)
+            (layouts.of(&table.block(&block).unwrap_or(block)).cloned(), path)
         };
-        let Some(layout) = index.layouts().of(&block).and_then(|it| it.inside(&path)) else { return };
+        let Some(layout) = layout.as_ref().and_then(|it| it.inside(&path)) else { return };
         for field in &layout.fields {
             self.add(&field.name, CompletionItemKind::Field, Some(field.shape.to_string()));
         }

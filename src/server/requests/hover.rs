@@ -269,8 +269,7 @@ fn declared(cursor: &InUnit<'_>, what: &What, object: &Object, index: &ProgramIn
         let Some((_, path)) = object.text.split_once('.').filter(|_| !matches!(what, What::Declaration(_))) else {
             return Some(whole);
         };
-        let layout = cursor.unit.entity(cursor.it.db).name().and_then(|it| index.layouts().of(it));
-        let place = layout.and_then(|it| it.place(&object.text)).and_then(|it| it.ty);
+        let place = index.layouts().of_names(cursor.model.fields()).place(&object.text).and_then(|it| it.ty);
         let ty = place.map_or_else(String::new, |it| format!(" of type `{}`", it.name()));
         return Some(format!("component `{path}`{ty} of `{}`, {whole}", field.name));
     }
