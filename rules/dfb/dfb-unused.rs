@@ -1,5 +1,7 @@
 //! F018: an instance, a parameter or a variable of a DFB that nothing uses.
 
+use std::cell::LazyCell;
+
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -19,14 +21,15 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 
 /// Of a type whose code is understood: what the code does not name. A public variable may serve the rest of the program.
 fn items(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    let mut outside: FxHashSet<(u32, SmolStr)> = FxHashSet::default();
-    for it in cx.program.places().filter(|it| it.class == Class::Symbol) {
-        if let Some((instance, item)) = it.text.split_once('.')
-            && let Some((unit, _)) = cx.program.dfb_of(instance)
-        {
-            outside.insert((unit, key(item.split(['.', ':', '[']).next().unwrap_or_default())));
-        }
-    }
+    let outside: LazyCell<FxHashSet<(u32, SmolStr)>, _> = LazyCell::new(|| {
+        let symbols = cx.program.places().filter(|it| it.class == Class::Symbol);
+        let items = symbols.filter_map(|it| {
+            let (instance, item) = it.text.split_once('.')?;
+            let (unit, _) = cx.program.dfb_of(instance)?;
+            Some((unit, key(item.split(['.', ':', '[']).next().unwrap_or_default())))
+        });
+        items.collect()
+    });
     for (unit, facts) in (0..).zip(&cx.program.units) {
         let Some(interface) =
             facts.interface.as_ref().filter(|_| facts.instructions > 0 && !facts.has_gaps && !facts.is_fragment)

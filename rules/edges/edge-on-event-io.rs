@@ -13,7 +13,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         return;
     }
     let event = |it: &GlobalUse<'_>| program.tasks(it.unit).find(|it| matches!(it, Context::Event(_)));
-    let channels = program.objects_that(|it| matches!(it.class, Class::Input | Class::Output));
+    let channels = program.objects_that(|it| matches!(it, Class::Input | Class::Output), |_| true);
     let mut exchanged: Vec<(Group<'_>, &Object, GlobalUse<'_>)> = Vec::new();
     for uses in &channels {
         // An output is exchanged when the event writes it, an input when it reads it.

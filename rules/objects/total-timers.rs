@@ -2,13 +2,13 @@
 
 use crate::analysis::{Site, counts};
 use crate::lint::{ProgramCx, Sink};
-use crate::model::object::Area;
+use crate::model::object::Class;
 use crate::target::{Counted, CountedBy};
 
 pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let Some(most) = cx.target.all_timers() else { return };
     // A number that is too high by itself has a rule of its own.
-    let timers = cx.program.those(|it| matches!(it.footprint.area, Area::Block(..)));
+    let timers = cx.program.those(|it| matches!(it, Class::Block | Class::BlockBit | Class::BlockWord), |_| true);
     let numbers = counts::numbers(&timers);
     let highest = |what: Counted| counts::highest(&numbers, cx.target, what);
     let (Some((timer, last)), Some((old, last_old))) = (highest(Counted::Timers), highest(Counted::OldTimers)) else {

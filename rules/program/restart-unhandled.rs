@@ -24,10 +24,10 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         Family::Pl72 => (asks_pl7_2, "`SY00` tells a cold start, `SY01` a warm one; `SY09` resets the outputs"),
         Family::Step5 | Family::Step7 => return,
     };
-    if is_project || !program.complete || program.objects_that(|it| it.class == Class::System).iter().any(asks) {
+    if is_project || !program.complete || program.objects_that(|it| it == Class::System, |_| true).iter().any(asks) {
         return;
     }
-    let outputs = program.objects_that(|it| it.class == Class::Output);
+    let outputs = program.objects_that(|it| it == Class::Output, |_| true);
     let mut writes: Vec<Site> = outputs
         .iter()
         .filter_map(|it| it.with_mode(crate::model::unit::Mode::writes).next())

@@ -17,7 +17,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     for (address, configured, key, role) in channels {
         let Some(configured) = configured else { continue };
         let Ok(channel) = pl72::parse(address) else { continue };
-        let uses = cx.program.objects_that(|it| it.footprint.overlaps(&channel.object.footprint));
+        let uses = cx.program.objects_that(|_| true, |it| it.footprint.overlaps(&channel.object.footprint));
         for it in uses {
             let mut places = it.uses.clone();
             drives::in_order(cx.program, &mut places);

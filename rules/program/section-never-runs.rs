@@ -21,7 +21,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         }
         let Some(&first) = section.units.first() else { continue };
         let own = program.run_by(&section.units);
-        let writes = program.objects_that(|it| it.footprint.overlaps(&condition.footprint));
+        let writes = program.objects_that(|_| true, |it| it.footprint.overlaps(&condition.footprint));
         // A reset does not start the section.
         let raises = |it: &&GlobalUse<'_>| it.mode.writes() && it.mode != Mode::Reset && it.it.constant() != Some(0);
         let mut raising = writes.iter().flat_map(|it| &it.uses).filter(raises).peekable();

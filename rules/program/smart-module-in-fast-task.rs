@@ -12,7 +12,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     if cx.target.pl72().is_none_or(|it| !it.has(Feature::Couplers)) {
         return;
     }
-    for uses in program.objects_that(|it| matches!(it.footprint.area, Area::ModuleWords(_))) {
+    for uses in program.objects_that(|_| true, |it| matches!(it.footprint.area, Area::ModuleWords(_))) {
         let is_fast = |it: &&GlobalUse<'_>| program.tasks(it.unit).any(|it| it == Context::Fast);
         let mut places: Vec<GlobalUse<'_>> = uses.uses.iter().filter(is_fast).copied().collect();
         drives::in_order(program, &mut places);

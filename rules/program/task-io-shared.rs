@@ -13,7 +13,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let mut units = (0..).zip(&program.units);
     let is_fast = |facts: &crate::analysis::facts::UnitFacts| facts.entity.task() == Some(Task::Fast);
     let Some((fast, _)) = units.find(|it| is_fast(it.1) && !it.1.uses.is_empty()) else { return };
-    for uses in program.objects_that(|it| it.class == Class::Output && it.is_fixed()) {
+    for uses in program.objects_that(|it| it == Class::Output, Object::is_fixed) {
         let Some((source, configured)) = owner(cx, uses.object) else { continue };
         let mut writes: Vec<GlobalUse<'_>> = uses.with_mode(Mode::writes).copied().collect();
         // Of what both tasks write, W005 speaks.

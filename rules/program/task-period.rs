@@ -4,7 +4,7 @@ use crate::analysis::Site;
 use crate::analysis::program::{Context, ProgramIndex};
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Family;
-use crate::model::object::{Area, Type};
+use crate::model::object::{Area, Class, Type};
 use crate::model::unit::Mode;
 use crate::target::Range;
 use crate::target::pl7::{FAST_PERIOD_MS, MASTER_PERIOD_MS, Series, WATCHDOG_MAX_MS};
@@ -64,7 +64,7 @@ fn first_unit(program: &ProgramIndex<'_>, context: Context) -> Option<Site> {
 
 /// A constant that the program gives as a period. What 0 does, the manual does not say.
 fn written(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
-    for uses in &cx.program.objects_that(|it| it.footprint.area == Area::SystemWords) {
+    for uses in &cx.program.objects_that(|it| it == Class::System, |it| it.footprint.area == Area::SystemWords) {
         let word = uses.object.footprint.start / 16;
         let Some((_, name, range)) = PERIODS.iter().find(|it| it.0 == word) else { continue };
         if uses.object.ty != Type::Word || uses.object.indexed {

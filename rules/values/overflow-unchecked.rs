@@ -4,7 +4,7 @@ use crate::analysis::Site;
 use crate::analysis::program::ObjectUses;
 use crate::lint::{ProgramCx, Sink};
 use crate::model::entity::Family;
-use crate::model::object::{Area, Object};
+use crate::model::object::{Area, Class, Object};
 
 /// `%S18` says that an operation overflowed, or divided by zero; so do `SY18` and, without signs, `SY17` (PL72:1031-1034).
 const OVERFLOW: u32 = 18;
@@ -26,7 +26,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
         let covers = it.indexed || (it.footprint.start <= OVERFLOW && first_bit < it.footprint.end());
         it.footprint.area == Area::SystemBits && covers
     };
-    let is_asked = program.objects_that(tells).iter().any(ObjectUses::is_read);
+    let is_asked = program.objects_that(|it| it == Class::System, tells).iter().any(ObjectUses::is_read);
     let mut computing: Vec<Site> =
         (0..).zip(&program.units).filter_map(|(unit, facts)| Some(Site { unit, anchor: facts.computes? })).collect();
     computing.sort_by_key(|it| (program.order[it.unit as usize], it.anchor));

@@ -8,10 +8,11 @@ use crate::model::unit::Callee;
 /// The calls that lead out of each unit to another unit of the program, in the order of the code, one for each callee.
 fn callees(program: &ProgramIndex<'_>) -> Vec<Vec<u32>> {
     let mut callees: Vec<Vec<u32>> = vec![Vec::new(); program.units.len()];
-    let mut seen = FxHashSet::default();
+    // Of each unit, the last one that was seen to call it: calls of one unit stand together.
+    let mut caller = vec![None; program.units.len()];
     for (index, call) in (0..).zip(&program.calls) {
         let Some(target) = call.target.filter(|_| call.it.reachable) else { continue };
-        if seen.insert((call.unit, target)) {
+        if caller[target as usize].replace(call.unit) != Some(call.unit) {
             callees[call.unit as usize].push(index);
         }
     }

@@ -97,7 +97,7 @@ pub fn of_events<'a>(program: &ProgramIndex<'a>) -> BTreeMap<u16, Vec<(&'a Objec
     if !program.has_events() {
         return events;
     }
-    for uses in program.objects_that(|it| matches!(it.class, Class::Input | Class::Output) && it.is_fixed()) {
+    for uses in program.objects_that(|it| matches!(it, Class::Input | Class::Output), Object::is_fixed) {
         let object = uses.object;
         for it in uses.uses.into_iter().filter(|it| object.class == Class::Input || it.mode.writes()) {
             for task in program.tasks(it.unit) {

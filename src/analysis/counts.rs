@@ -1,8 +1,6 @@
 //! Numbers of objects against how many of them there are.
 
-use std::cell::RefCell;
-
-use rustc_hash::FxHashMap;
+use std::cell::OnceCell;
 
 use super::program::{ObjectUses, ProgramIndex};
 use super::{Site, drives};
@@ -76,16 +74,16 @@ pub fn numbers<'p>(program: &'p ProgramIndex<'_>) -> Vec<Numbered<'p>> {
 /// The counts of a target, each looked up once.
 pub struct Ends<'t> {
     target: &'t Target,
-    known: RefCell<FxHashMap<Counted, Option<Count>>>,
+    known: [OnceCell<Option<Count>>; Counted::ALL.len()],
 }
 
 impl<'t> Ends<'t> {
     pub fn new(target: &'t Target) -> Self {
-        Self { target, known: RefCell::default() }
+        Self { target, known: Default::default() }
     }
 
     pub fn of(&self, what: Counted) -> Option<Count> {
-        *self.known.borrow_mut().entry(what).or_insert_with(|| self.target.count(what))
+        *self.known.get(what as usize)?.get_or_init(|| self.target.count(what))
     }
 
     /// The count that a number does not fit.

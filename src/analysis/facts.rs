@@ -24,8 +24,8 @@ use crate::model::dfb::Interface;
 use crate::model::entity::{BlockKind, BlockName, Entity, Part};
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId, Operator};
 use crate::model::layout::DataType;
-use crate::model::object::{Class, Object, Type};
-use crate::model::unit::{Access, Actual, Argument, Call, Callee, Formal, Index, Mode, Pin, StatementKind};
+use crate::model::object::{Area, Class, Object, Type};
+use crate::model::unit::{Access, Actual, Argument, Call, Callee, Formal, Index, IndexKind, Mode, Pin, StatementKind};
 use crate::syntax::Language;
 
 /// One use of one object.
@@ -156,7 +156,7 @@ pub struct UnitFacts {
     /// In execution order.
     pub uses: Vec<Use>,
     pub calls: Vec<FactCall>,
-    /// What stands in the brackets of indexed objects; an object is one of `objects`.
+    /// What stands in the brackets of indexed objects, internal words left out; an object is one of `objects`.
     pub indexes: Vec<Index>,
     /// Pairs of calls, by index, the smaller first, that never run in the same scan. Sorted.
     pub exclusive_calls: Vec<(u32, u32)>,
@@ -329,7 +329,7 @@ impl UnitFacts {
             objects: objects.map(|((at, object), number)| FactObject::new(object, number, missed(at))).collect(),
             uses,
             calls: calls(model),
-            indexes: model.indexes.clone(),
+            indexes: model.indexes.iter().filter(|it| !is_internal_word(model, it.what)).cloned().collect(),
             exclusive_calls: exclusive_calls(model, space),
             exclusive_uses: exclusive_uses(model, space, &given),
             asking: Asking::new(model),
@@ -441,6 +441,12 @@ impl UnitFacts {
         };
         self.uses.insert(0, read);
     }
+}
+
+fn is_internal_word(model: &UnitModel, index: IndexKind) -> bool {
+    let IndexKind::Object(it) = index else { return false };
+    let object = model.object(it);
+    object.footprint.area == Area::Words && object.ty == Type::Word && object.class == Class::Memory && !object.indexed
 }
 
 fn is_own_value(model: &UnitModel, value: ExprId, object: ObjectId) -> bool {

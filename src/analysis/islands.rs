@@ -125,6 +125,8 @@ impl Held {
 pub struct Islands {
     ids: HashTable<u32>,
     objects: Vec<Known>,
+    /// Of each object, beside the others: most of those who look for objects want few classes.
+    classes: Vec<Class>,
     /// Of the uses of each object.
     modes: Vec<Modes>,
     /// Objects that are [`Access::is_odd`].
@@ -271,6 +273,7 @@ impl Islands {
         if Access::is_odd(&fact.object) {
             self.odd.push(id);
         }
+        self.classes.push(fact.object.class);
         self.modes.push(Modes::default());
         self.objects.push(Known { fact: fact.clone(), area, users: Vec::new() });
         id
@@ -402,9 +405,15 @@ impl Islands {
     }
 
     /// The objects that are wanted, in their order.
-    pub fn those<'a>(&self, skeleton: &Skeleton<'a>, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
-        let wanted = (0..).zip(&self.objects).filter(|it| !it.1.users.is_empty() && wanted(&it.1.fact.object));
-        self.collect(skeleton, wanted.map(|it| it.0))
+    pub fn those<'a>(
+        &self,
+        skeleton: &Skeleton<'a>,
+        class: impl Fn(Class) -> bool,
+        wanted: impl Fn(&Object) -> bool,
+    ) -> Vec<ObjectUses<'a>> {
+        let of_class = (0..).zip(&self.classes).filter(|it| class(*it.1)).map(|it| it.0);
+        let is_wanted = |it: &Known| !it.users.is_empty() && wanted(&it.fact.object);
+        self.collect(skeleton, of_class.filter(|it: &u32| is_wanted(&self.objects[*it as usize])))
     }
 
     fn collect<'a>(&self, skeleton: &Skeleton<'a>, objects: impl Iterator<Item = u32>) -> Vec<ObjectUses<'a>> {
@@ -437,14 +446,20 @@ impl Islands {
                     uses.push(skeleton, unit, it);
                 }
             }
-            found.push((rank, at, uses));
+            let place = &first.object.footprint;
+            found.push(([self.objects[id as usize].area, place.start, u32::MAX - place.bits, rank, at], uses));
         }
-        found.sort_unstable_by(|a, b| {
-            let key = |it: &'_ Object| (it.footprint.start, u32::MAX - it.footprint.bits);
-            let (x, y) = (a.2.object, b.2.object);
-            x.footprint.area.cmp(&y.footprint.area).then_with(|| (key(x), a.0, a.1).cmp(&(key(y), b.0, b.1)))
-        });
-        found.into_iter().map(|it| it.2).collect()
+        // Areas hold names: they are compared once each, not once a comparison of objects.
+        let mut areas: Vec<(u32, &Area)> = found.iter().map(|it| (it.0[0], &it.1.object.footprint.area)).collect();
+        areas.sort_unstable_by_key(|it| it.0);
+        areas.dedup_by_key(|it| it.0);
+        areas.sort_unstable_by_key(|it| it.1);
+        let ranks: FxHashMap<u32, u32> = areas.into_iter().map(|it| it.0).zip(0..).collect();
+        for (key, _) in &mut found {
+            key[0] = ranks.get(&key[0]).copied().unwrap_or(NONE);
+        }
+        found.sort_unstable_by_key(|it| it.0);
+        found.into_iter().map(|it| it.1).collect()
     }
 }
 

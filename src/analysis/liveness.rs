@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use super::Site;
 use super::conditions::{Lessons, Space, Verdict};
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::UnitModel;
@@ -389,16 +388,17 @@ pub struct LostWrites<'a> {
 /// What the units of a program lose, without what other code may see between the write and the one that overrides it, and
 /// without the bits of which [`drives`](super::drives) tells that they are driven in several places.
 pub fn of_program<'a, 'n>(program: &'a ProgramIndex<'a>, neighbours: impl Fn(u32) -> &'n [u32]) -> Vec<LostWrites<'a>> {
-    let mut shared: FxHashMap<Site, &Lost> = FxHashMap::default();
     let mut found = Vec::new();
-    for (unit, facts) in (0..).zip(&program.units) {
-        shared.extend(facts.lost.iter().filter(|it| !it.local).map(|it| (Site { unit, anchor: it.write }, it)));
-    }
     for (unit, facts) in program.judged_units() {
         let mut own: BTreeMap<u32, Vec<&Lost>> = BTreeMap::new();
-        for it in facts.lost.iter().filter(|it| it.local) {
-            if let Some(object) = facts.uses.iter().find(|of| of.anchor == it.write).map(|it| it.object) {
-                own.entry(object).or_default().push(it);
+        let mut local = facts.lost.iter().filter(|it| it.local).peekable();
+        let mut written: FxHashMap<u32, u32> = FxHashMap::default();
+        for it in facts.uses.iter().filter(|_| local.peek().is_some()) {
+            written.entry(it.anchor).or_insert(it.object);
+        }
+        for it in local {
+            if let Some(object) = written.get(&it.write) {
+                own.entry(*object).or_default().push(it);
             }
         }
         found.extend(own.into_iter().filter_map(|(object, writes)| {
@@ -406,12 +406,15 @@ pub fn of_program<'a, 'n>(program: &'a ProgramIndex<'a>, neighbours: impl Fn(u32
             Some(LostWrites { unit, text, writes })
         }));
     }
-    if shared.is_empty() {
-        return found;
-    }
+    let mut shared: FxHashMap<u32, FxHashMap<u32, &Lost>> = FxHashMap::default();
     for (at, uses) in (0..).zip(&program.objects) {
-        let mut writes = uses.uses.iter().filter_map(|it| Some((it, *shared.get(&it.site())?))).peekable();
-        if writes.peek().is_none() || is_driven_by_others(program, uses, neighbours(at)) {
+        let lost = |it: &'a GlobalUse<'a>| {
+            let facts = program.units.get(it.unit as usize).filter(|it| !it.lost.is_empty())?;
+            let all = || facts.lost.iter().filter(|it| !it.local).map(|it| (it.write, it)).collect();
+            Some((it, *shared.entry(it.unit).or_insert_with(all).get(&it.it.anchor)?))
+        };
+        let writes: Vec<_> = uses.with_mode(|it| it.assigns() || it == Mode::Store).filter_map(lost).collect();
+        if writes.is_empty() || is_driven_by_others(program, uses, neighbours(at)) {
             continue;
         }
         let mut lists: BTreeMap<u32, LostWrites<'_>> = BTreeMap::new();

@@ -128,7 +128,7 @@ impl Outline {
             let it = unit.and_then(|it| self.units.get(it));
             it.into_iter().flat_map(|it| it.targets.iter().map(|it| numbers.target(*it)))
         };
-        let mut changed = Vec::new();
+        let (mut changed, mut redeclared) = (Vec::new(), false);
         let mut has_moved = vec![false; facts.len()];
         // Where calls lead of which something is new: findings in the code behind them may name it.
         let mut behind: VecDeque<u32> = numbers.gone().flat_map(|it| targets(Some(it as usize))).flatten().collect();
@@ -153,9 +153,12 @@ impl Outline {
             }
             let all = difference == Difference::Calls;
             let led = || targets(before(unit));
-            if difference == Difference::None && led().eq(is.targets.iter().copied()) {
+            let leads_on =
+                if numbers.are_same() { was.targets == is.targets } else { led().eq(is.targets.iter().copied()) };
+            if difference == Difference::None && leads_on {
                 continue;
             }
+            redeclared |= a.declared != b.declared;
             has_moved[at] = true;
             for ((from, &to), (x, y)) in led().zip(&is.targets).zip(a.calls.iter().zip(&b.calls)) {
                 if all || from != to || x.anchor != y.anchor {
@@ -171,7 +174,7 @@ impl Outline {
             let facts = before(it).and_then(|was| Some((old.get(was)?, facts.get(it as usize)?)));
             facts.is_some_and(|(a, b)| !Arc::ptr_eq(a, b) && a.declared != b.declared)
         };
-        for (unit, is) in (0..).zip(&new.units) {
+        for (unit, is) in (0..).zip(&new.units).filter(|_| redeclared) {
             let called = targets(before(unit)).chain(is.targets.iter().copied()).flatten();
             has_moved[unit as usize] |= called.into_iter().any(is_other);
         }

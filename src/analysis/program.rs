@@ -267,7 +267,7 @@ pub struct Skeleton<'a> {
     pub units: Vec<&'a UnitFacts>,
     /// Those of a unit stand together.
     pub calls: Vec<GlobalCall<'a>>,
-    /// Of each unit, its first call.
+    /// Of each unit, its first call; then the end.
     first_calls: Vec<u32>,
     /// Calls into each unit, as indices into `calls`.
     pub callers: Vec<Vec<u32>>,
@@ -387,18 +387,19 @@ impl<'a> ProgramIndex<'a> {
         part
     }
 
-    /// Those of its objects that are wanted, in their order. Of a few out of many, this spares the others.
-    pub fn objects_that(&self, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
+    /// Those of its objects of some classes that are wanted, in their order. Of a few out of many, this spares the others.
+    pub fn objects_that(&self, class: impl Fn(Class) -> bool, wanted: impl Fn(&Object) -> bool) -> Vec<ObjectUses<'a>> {
+        let is_wanted = |it: &Object| class(it.class) && wanted(it);
         match (self.objects.all.get(), self.islands.get()) {
-            (Some(all), _) => all.iter().filter(|it| wanted(it.object)).cloned().collect(),
-            (None, Some(islands)) => islands.those(&self.skeleton, wanted),
-            (None, None) => collect(&self.skeleton, wanted),
+            (Some(all), _) => all.iter().filter(|it| is_wanted(it.object)).cloned().collect(),
+            (None, Some(islands)) => islands.those(&self.skeleton, class, wanted),
+            (None, None) => collect(&self.skeleton, is_wanted),
         }
     }
 
     /// Its part with those objects alone.
-    pub fn those(&self, wanted: impl Fn(&Object) -> bool) -> Self {
-        Self::part(self.skeleton.clone(), self.objects_that(wanted), Box::default(), self.summary())
+    pub fn those(&self, class: impl Fn(Class) -> bool, wanted: impl Fn(&Object) -> bool) -> Self {
+        Self::part(self.skeleton.clone(), self.objects_that(class, wanted), Box::default(), self.summary())
     }
 
     /// What is used, whatever for, in no order.
@@ -516,7 +517,7 @@ impl<'a> Skeleton<'a> {
     pub fn new(family: Family, units: Vec<&'a UnitFacts>) -> Self {
         let names = unit_names(&units);
         let mut calls = Vec::new();
-        let mut first_calls = Vec::with_capacity(units.len());
+        let mut first_calls = Vec::with_capacity(units.len() + 1);
         let mut callers = vec![Vec::new(); units.len()];
         for (unit, facts) in units.iter().enumerate() {
             first_calls.push(as_index(calls.len()));
@@ -528,9 +529,11 @@ impl<'a> Skeleton<'a> {
                 calls.push(GlobalCall { unit: as_index(unit), index: as_index(index), it, target });
             }
         }
-        let (contexts, reached) = contexts(&units, &calls);
-        let sure = sure(&units, &calls);
-        let order = order(family, &units, &calls);
+        first_calls.push(as_index(calls.len()));
+        let callees = Callees { calls: &calls, first: &first_calls };
+        let (contexts, reached) = contexts(&units, callees);
+        let sure = sure(&units, callees);
+        let order = order(family, &units, callees);
         let complete = is_complete(family, &units, &calls);
         let partial = units.iter().any(|it| it.has_gaps || it.is_fragment);
         let (charts, actions, layouts) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
@@ -554,7 +557,7 @@ impl<'a> Skeleton<'a> {
     }
 
     /// The unit that a call of a unit, by its index there, leads to.
-    fn target_of(&self, unit: u32, call: u32) -> Option<u32> {
+    pub(super) fn target_of(&self, unit: u32, call: u32) -> Option<u32> {
         self.calls.get((self.first_calls.get(unit as usize)? + call) as usize).filter(|it| it.unit == unit)?.target
     }
 
@@ -847,6 +850,22 @@ enum UnitName {
     Instance(SmolStr),
 }
 
+/// What the units of a program call.
+#[derive(Clone, Copy)]
+struct Callees<'c, 'a> {
+    calls: &'c [GlobalCall<'a>],
+    /// See [`Skeleton::first_calls`].
+    first: &'c [u32],
+}
+
+impl<'c, 'a> Callees<'c, 'a> {
+    fn of(self, unit: u32) -> &'c [GlobalCall<'a>] {
+        let place = |at: usize| self.first.get(at).map(|it| *it as usize);
+        let range = place(unit as usize).zip(place(unit as usize + 1));
+        range.and_then(|(start, end)| self.calls.get(start..end)).unwrap_or_default()
+    }
+}
+
 fn unit_names(units: &[&UnitFacts]) -> FxHashMap<UnitName, u32> {
     let mut names = FxHashMap::default();
     for (at, facts) in units.iter().enumerate() {
@@ -912,13 +931,7 @@ fn own_context(facts: &UnitFacts) -> Option<Context> {
 }
 
 /// Contexts of each unit, and whether they are known.
-fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>>, Vec<bool>) {
-    let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
-    for call in calls {
-        if let Some(target) = call.target.filter(|_| call.it.reachable) {
-            callees[call.unit as usize].push(target);
-        }
-    }
+fn contexts(units: &[&UnitFacts], callees: Callees<'_, '_>) -> (Vec<Vec<Context>>, Vec<bool>) {
     let mut contexts: Vec<Vec<Context>> = vec![Vec::new(); units.len()];
     for (unit, facts) in units.iter().enumerate() {
         let Some(context) = own_context(facts).filter(|_| is_entry(&facts.entity)) else { continue };
@@ -926,7 +939,7 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>
         while let Some(at) = stack.pop() {
             if !contexts[at as usize].contains(&context) {
                 contexts[at as usize].push(context);
-                stack.extend(&callees[at as usize]);
+                stack.extend(callees.of(at).iter().filter(|it| it.it.reachable).filter_map(|it| it.target));
             }
         }
     }
@@ -942,17 +955,14 @@ fn contexts(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> (Vec<Vec<Context>
 
 /// Which units surely run. What belongs to a step of a chart runs while the step is active, a section that has a condition
 /// while that is 1.
-fn sure(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<bool> {
+fn sure(units: &[&UnitFacts], callees: Callees<'_, '_>) -> Vec<bool> {
     let is_chart = |it: &Entity| matches!(it, Entity::Pl7 { part: Part::Chart(_), .. });
     let is_sure = |it: &UnitFacts| is_entry(&it.entity) && !is_chart(&it.entity) && it.condition.is_none();
     let mut sure: Vec<bool> = units.iter().map(|it| is_sure(it)).collect();
-    let mut callees: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
-    for call in calls.iter().filter(|it| it.it.reachable && !it.it.conditional) {
-        callees[call.unit as usize].extend(call.target);
-    }
     let mut stack: Vec<u32> = (0..as_index(units.len())).filter(|&it| sure[it as usize]).collect();
     while let Some(at) = stack.pop() {
-        for &callee in &callees[at as usize] {
+        let calls = callees.of(at).iter().filter(|it| it.it.reachable && !it.it.conditional);
+        for callee in calls.filter_map(|it| it.target) {
             if !std::mem::replace(&mut sure[callee as usize], true) {
                 stack.push(callee);
             }
@@ -963,13 +973,7 @@ fn sure(units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<bool> {
 
 /// Depth-first from the entry points in file order, callees where they are called; then what nothing calls. The parts of a
 /// PL7-2 program have an order of their own, wherever they are written.
-fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<u32> {
-    let mut by_unit: Vec<Vec<u32>> = vec![Vec::new(); units.len()];
-    for call in calls {
-        if let Some(target) = call.target {
-            by_unit[call.unit as usize].push(target);
-        }
-    }
+fn order(family: Family, units: &[&UnitFacts], callees: Callees<'_, '_>) -> Vec<u32> {
     let mut order = vec![u32::MAX; units.len()];
     let mut next = 0;
     let mut entries: Vec<usize> = (0..units.len()).filter(|&it| is_entry(&units[it].entity)).collect();
@@ -986,7 +990,8 @@ fn order(family: Family, units: &[&UnitFacts], calls: &[GlobalCall<'_>]) -> Vec<
             }
             order[at as usize] = next;
             next += 1;
-            stack.extend(by_unit[at as usize].iter().rev().filter(|&&it| order[it as usize] == u32::MAX));
+            let called = callees.of(at).iter().rev().filter_map(|it| it.target);
+            stack.extend(called.filter(|&it| order[it as usize] == u32::MAX));
         }
     }
     order
@@ -1007,7 +1012,7 @@ fn order_sections(units: &[&UnitFacts], entries: &mut [usize]) {
             first.entry(section).or_insert(it);
         }
     }
-    entries.sort_by_key(|&it| match part(it) {
+    entries.sort_by_cached_key(|&it| match part(it) {
         Some((section, rank)) => (first.get(&section).copied().unwrap_or(it), rank),
         None => (it, 0),
     });

@@ -599,7 +599,7 @@ impl<'p, 'a> Net<'p, 'a> {
 
     fn find_presets(&mut self, program: &ProgramIndex<'a>) {
         let mut presets: FxHashMap<(u32, u32), Vec<Node>> = FxHashMap::default();
-        for uses in program.objects_that(|it| matches!(it.class, Class::System | Class::Step)) {
+        for uses in program.objects_that(|it| matches!(it, Class::System | Class::Step), |_| true) {
             let object = uses.object;
             if object.class == Class::System && object.footprint.area == Area::SystemBits {
                 self.is_commanded |= (21..=24).contains(&object.footprint.start) && uses.is_written();

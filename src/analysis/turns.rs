@@ -324,15 +324,12 @@ pub struct Costly<'a> {
 /// What the loops of a program cost, with the blocks that they call.
 pub struct LoopCosts<'p, 'a> {
     program: &'p ProgramIndex<'a>,
-    /// Of each unit, by the index of a call: what it calls.
-    targets: FxHashMap<(u32, u32), u32>,
     units: FxHashMap<u32, u64>,
 }
 
 impl<'p, 'a> LoopCosts<'p, 'a> {
     pub fn new(program: &'p ProgramIndex<'a>) -> Self {
-        let targets = program.calls.iter().filter_map(|it| Some(((it.unit, it.index), it.target?)));
-        Self { program, targets: targets.collect(), units: FxHashMap::default() }
+        Self { program, units: FxHashMap::default() }
     }
 
     /// The loops that take more operations than a unit may, without those around them.
@@ -344,6 +341,9 @@ impl<'p, 'a> LoopCosts<'p, 'a> {
                 continue;
             }
             let (totals, most) = (self.totals(unit, 0), most(unit));
+            if totals.iter().all(|it| *it <= most) {
+                continue;
+            }
             for (at, (it, &operations)) in (0..).zip(facts.loops.iter().zip(&totals)) {
                 let Some(turns) = it.turns else { continue };
                 // What stands in a loop comes right behind it.
@@ -352,7 +352,8 @@ impl<'p, 'a> LoopCosts<'p, 'a> {
                 let inner: Vec<_> = within.filter(|it| it.0.parent == Some(at)).collect();
                 let of_inner = inner.iter().any(|it| *it.1 > most);
                 let of_called = it.calls.iter().any(|call| {
-                    self.targets.get(&(unit, *call)).is_some_and(|it| self.units.get(it).is_some_and(|it| *it > most))
+                    let called = program.target_of(unit, *call);
+                    called.is_some_and(|it| self.units.get(&it).is_some_and(|it| *it > most))
                 });
                 if operations > most && !of_inner && !of_called {
                     let inner = inner.into_iter().filter_map(|(it, _)| Some((it.anchor, it.turns?))).collect();
@@ -385,7 +386,7 @@ impl<'p, 'a> LoopCosts<'p, 'a> {
     fn called(&mut self, unit: u32, call: u32, depth: u32) -> u64 {
         /// Calls in one another that are followed.
         const DEEPEST: u32 = 16;
-        let Some(&target) = self.targets.get(&(unit, call)) else { return 0 };
+        let Some(target) = self.program.target_of(unit, call) else { return 0 };
         if let Some(&known) = self.units.get(&target) {
             return known;
         }

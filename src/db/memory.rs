@@ -258,7 +258,9 @@ impl From {
         failed.extend(ran.failed);
         failed.sort_unstable();
         failed.dedup();
-        known.retain(|it, _| !moved.contains(it));
+        for it in &moved {
+            known.remove(it);
+        }
         known.extend(asked.into_iter().filter_map(|(of, it)| Some((islands.object(of)?, it))));
         let asked_of_all = self.asked_of_all.join(asked_of_all);
         (Ran { findings, failed }, asked_of_all, Kept::Known(Known { islands, subjects, asked: known }))

@@ -32,7 +32,7 @@ pub enum Counted {
 }
 
 impl Counted {
-    const ALL: [Self; 16] = [
+    pub const ALL: [Self; 16] = [
         Self::Bits,
         Self::Words,
         Self::Bytes,

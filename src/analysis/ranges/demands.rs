@@ -163,7 +163,7 @@ pub fn unmet<'a>(
         return found;
     }
     let asked: Stretches<'_> = open.iter().map(|it| &it.2.footprint).collect();
-    let written = Written::new(&program.those(|it| asked.overlap(&it.footprint)));
+    let written = Written::new(&program.those(|_| true, |it| asked.overlap(&it.footprint)));
     for (it, accepted, _) in open {
         if let Some((number, because)) = written.unmet(it.site.unit, it.it, accepted) {
             found.push(Unmet { number, because, assumes_writes: true, ..it });
