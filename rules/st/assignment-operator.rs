@@ -10,10 +10,10 @@ use crate::syntax::{SyntaxKind, SyntaxToken};
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     let assignments = cx.nodes(SyntaxKind::AssignStmt).filter_map(AssignStmt::cast);
     let loops = cx.nodes(SyntaxKind::ForStmt).filter_map(ForStmt::cast);
-    let operators =
-        assignments.map(|it| (it.target(), it.operator())).chain(loops.map(|it| (it.index(), it.operator())));
-    for (target, operator) in operators {
-        let Some(operator) = operator.filter(|it| it.kind() == SyntaxKind::Eq) else { continue };
+    let is_mistaken = |it: &SyntaxToken<'_>| it.kind() == SyntaxKind::Eq;
+    let assignments = assignments.filter_map(|it| Some((it.operator().filter(is_mistaken)?, it.target())));
+    let loops = loops.filter_map(|it| Some((it.operator().filter(is_mistaken)?, it.index())));
+    for (operator, target) in assignments.chain(loops) {
         let target = target.map_or("", |it| cx.text_of(it.syntax().text_range()));
         exchange(sink, operator, ":=", format!("`=` compares, and `{target}` is to be assigned"));
     }

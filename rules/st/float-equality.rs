@@ -10,8 +10,8 @@ use crate::syntax::pl7::ast::{BinExpr, BinOp, Expr, LiteralValue};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     for expr in cx.nodes(SyntaxKind::BinExpr).filter_map(BinExpr::cast) {
-        let (Some(BinOp::Eq | BinOp::Ne), Some(operator)) = (expr.op(), expr.operator()) else { continue };
-        let (Some(a), Some(b)) = (expr.lhs(), expr.rhs()) else { continue };
+        let Some((BinOp::Eq | BinOp::Ne, operator)) = expr.operation() else { continue };
+        let (Some(a), Some(b)) = expr.operands() else { continue };
         let kinds = [a, b].map(|it| cx.kinds().of(it));
         // A whole number beside a floating-point number is T011's affair.
         if !kinds.contains(&Kind::Float) || kinds.iter().any(|it| it.is_integer()) || is_zero(&a) || is_zero(&b) {

@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use crate::analysis::ranges::Ranges;
 use crate::lint::{Severity, Sink, UnitCx};
+use crate::model::UnitModel;
 use crate::model::expr::{Expr, ExprId, Operator};
 use crate::model::object::Type;
 use crate::model::pl7_kinds::Kind;
@@ -13,22 +14,22 @@ use crate::syntax::pl7::ast::AssignStmt;
 use crate::syntax::{AstNode as _, SyntaxKind};
 
 pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
-    let assignments = cx.nodes(SyntaxKind::AssignStmt).filter_map(AssignStmt::cast);
-    let mut candidates = assignments.filter_map(|it| {
-        let (target, value) = (it.target()?, it.value()?);
+    let model = cx.model;
+    let stores: FxHashMap<TextRange, (u32, ExprId)> = (0..)
+        .zip(&model.statements)
+        .filter_map(|(at, it)| match it.kind {
+            StatementKind::Store { value, .. } if !is_of_words(model, value) => Some((it.range, (at, value))),
+            _ => None,
+        })
+        .collect();
+    let assignments = cx.nodes(SyntaxKind::AssignStmt).filter(|it| stores.contains_key(&it.text_range()));
+    let mut candidates = assignments.filter_map(AssignStmt::cast).filter_map(|it| {
+        let (Some(target), Some(value)) = it.sides() else { return None };
         let is_word = cx.kinds().type_of(target) == Some(Type::Word);
         let kind = is_word.then(|| cx.kinds().of(value)).filter(|it| matches!(it, Kind::Double | Kind::Integer))?;
         Some((kind, [it.syntax(), target.syntax(), value.syntax()].map(|it| it.text_range())))
     });
     let Some(first) = candidates.next() else { return };
-    let model = cx.model;
-    let stores: FxHashMap<TextRange, (u32, ExprId)> = (0..)
-        .zip(&model.statements)
-        .filter_map(|(at, it)| match it.kind {
-            StatementKind::Store { value, .. } => Some((it.range, (at, value))),
-            _ => None,
-        })
-        .collect();
     let ranges = Ranges::new(model);
     for (kind, [statement, target, value]) in std::iter::once(first).chain(candidates) {
         let Some(&(at, expr)) = stores.get(&statement) else { continue };
@@ -61,5 +62,17 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
         } else if !lets_pass {
             report.label("nothing here tells how large it is").severity(Severity::Advice);
         }
+    }
+}
+
+/// Whether a value is a word, or computed from words and constants, which gives one.
+fn is_of_words(model: &UnitModel, value: ExprId) -> bool {
+    let is_constant = |it: ExprId| matches!(model.exprs.get(it), Expr::Int(_));
+    match *model.exprs.get(value) {
+        Expr::Read { object, .. } => model.object(object).ty == Type::Word,
+        Expr::Negate(a) => is_of_words(model, a),
+        Expr::Binary(_, a, b) if is_constant(a) => is_of_words(model, b),
+        Expr::Binary(_, a, b) => is_of_words(model, a) && (is_constant(b) || is_of_words(model, b)),
+        _ => false,
     }
 }

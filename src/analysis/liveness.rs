@@ -17,6 +17,7 @@ use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::UnitModel;
 use crate::model::dfb::Role;
 use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
+use crate::model::granules::Granules;
 use crate::model::object::{Area, Class, Footprint, Object, Type};
 use crate::model::unit::{Access, Mode, Statement, StatementKind};
 use crate::syntax::Language;
@@ -38,11 +39,6 @@ const MOST_WAITING: usize = 16;
 /// Conditions that are larger are not compared.
 const LONGEST: usize = 128;
 
-/// Bits of an area that one list of waiting writes covers, and the lists that one object may have: a wider one that is read
-/// reads the whole area, and one that is written overrides nothing.
-const GRANULE: u32 = 32;
-const WIDEST: u32 = 64;
-
 /// The writes of a unit that are lost. A unit that is not understood has none.
 pub fn lost(model: &UnitModel) -> Vec<Lost> {
     if model.has_gaps || model.language == Language::Pl7Xref {
@@ -53,8 +49,7 @@ pub fn lost(model: &UnitModel) -> Vec<Lost> {
         model,
         space: Space::of(model).learning(&lessons),
         waiting: Vec::new(),
-        areas: Areas::new(model),
-        lists: Lists::default(),
+        lists: Lists::new(&model.granules),
         met: Vec::new(),
         found: Vec::new(),
     };
@@ -106,62 +101,34 @@ struct Walk<'a> {
     model: &'a UnitModel,
     space: Space<'a>,
     waiting: Vec<Waiting<'a>>,
-    areas: Areas<'a>,
     lists: Lists,
     /// What shares memory with the place that is looked at.
     met: Vec<u32>,
     found: Vec<Lost>,
 }
 
-/// The areas that the objects of a unit lie in, numbered: areas hold names, and each place asks for them.
-struct Areas<'a> {
-    all: Vec<&'a Area>,
-    /// Of each object.
-    of: Vec<u32>,
-}
-
-impl<'a> Areas<'a> {
-    fn new(model: &'a UnitModel) -> Self {
-        let mut known: FxHashMap<&Area, u32> = FxHashMap::default();
-        let (mut all, mut of) = (Vec::new(), Vec::with_capacity(model.objects.len()));
-        for object in &model.objects {
-            let area = &object.footprint.area;
-            let number = *known.entry(area).or_insert(u32::try_from(all.len()).unwrap_or(u32::MAX));
-            if number as usize == all.len() {
-                all.push(area);
-            }
-            of.push(number);
-        }
-        Self { all, of }
-    }
-
-    fn of(&self, object: ObjectId) -> u32 {
-        self.of.get(object.0 as usize).copied().unwrap_or(u32::MAX)
-    }
-
-    fn those(&self, wanted: impl Fn(&Area) -> bool) -> impl Iterator<Item = u32> {
-        (0..).zip(&self.all).filter(move |it| wanted(it.1)).map(|it| it.0)
-    }
-}
-
-/// Indices of what waits, by area and granule. A list may hold some that wait no more.
-#[derive(Default)]
+/// Indices of what waits, by granule. A list may hold some that wait no more.
 struct Lists {
-    lists: FxHashMap<(u32, u32), List>,
+    lists: Vec<List>,
     /// Counts what was cleared. A list from before its area was cleared is empty.
     now: u32,
-    /// When all areas were cleared, and when each of some was.
+    /// When all areas were cleared, and when each was.
     all: u32,
-    areas: FxHashMap<u32, u32>,
+    areas: Vec<u32>,
 }
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct List {
     since: u32,
     waiting: Vec<u32>,
 }
 
 impl Lists {
+    fn new(granules: &Granules) -> Self {
+        let (lists, areas) = (vec![List::default(); granules.count()], vec![0; granules.areas().len()]);
+        Self { lists, now: 0, all: 0, areas }
+    }
+
     fn clear(&mut self) {
         self.now += 1;
         self.all = self.now;
@@ -169,27 +136,29 @@ impl Lists {
 
     fn clear_area(&mut self, area: u32) {
         self.now += 1;
-        self.areas.insert(area, self.now);
+        if let Some(it) = self.areas.get_mut(area as usize) {
+            *it = self.now;
+        }
     }
 
     /// When an area was cleared last.
     fn cleared(&self, area: u32) -> u32 {
-        self.areas.get(&area).map_or(self.all, |it| self.all.max(*it))
+        self.areas.get(area as usize).map_or(self.all, |it| self.all.max(*it))
     }
 
     fn get(&self, area: u32, granule: u32) -> &[u32] {
-        let list = self.lists.get(&(area, granule)).filter(|it| it.since >= self.cleared(area));
+        let list = self.lists.get(granule as usize).filter(|it| it.since >= self.cleared(area));
         list.map_or(&[], |it| &it.waiting)
     }
 
-    fn list(&mut self, area: u32, granule: u32) -> &mut Vec<u32> {
+    fn list(&mut self, area: u32, granule: u32) -> Option<&mut Vec<u32>> {
         let (now, cleared) = (self.now, self.cleared(area));
-        let list = self.lists.entry((area, granule)).or_default();
+        let list = self.lists.get_mut(granule as usize)?;
         if list.since < cleared {
             list.since = now;
             list.waiting.clear();
         }
-        &mut list.waiting
+        Some(&mut list.waiting)
     }
 }
 
@@ -233,12 +202,14 @@ impl<'a> Walk<'a> {
     /// Something may look at the object.
     fn read(&mut self, access: &Access) {
         let object = self.model.object(access.object);
+        // One that is too wide reads the whole area, and overrides nothing where it is written.
+        let is_wide = self.model.granules.of(access.object).is_empty();
         match &object.footprint.area {
             Area::Indirect => self.lists.clear(),
             _ if !object.is_fixed() && object.class == Class::Symbol => self.lists.clear(),
             // Where the parts of a symbol lie is not known, nor how large it is.
-            area if !object.is_fixed() || matches!(area, Area::Symbol(_)) || granules(&object.footprint).is_none() => {
-                self.lists.clear_area(self.areas.of(access.object));
+            area if !object.is_fixed() || matches!(area, Area::Symbol(_)) || is_wide => {
+                self.lists.clear_area(self.model.granules.area(access.object));
             }
             area => {
                 // Which block is open, and whose instance this is, is not known.
@@ -262,7 +233,9 @@ impl<'a> Walk<'a> {
     }
 
     fn clear_areas(&mut self, wanted: impl Fn(&Area) -> bool) {
-        self.areas.those(wanted).for_each(|it| self.lists.clear_area(it));
+        let is_wanted = |it: &(u32, &ObjectId)| wanted(&self.model.object(*it.1).footprint.area);
+        let areas = (0..).zip(self.model.granules.areas());
+        areas.filter(is_wanted).for_each(|it| self.lists.clear_area(it.0));
     }
 
     fn write(&mut self, access: &'a Access, statement: &Statement, value: Option<ExprId>, when: ExprId) {
@@ -276,10 +249,12 @@ impl<'a> Walk<'a> {
             {
                 return;
             }
-            waiting.overridden.push([path, when]);
             waiting.by.push(anchor);
             let write = waiting.access.path;
             let straight_on = write == path && when == Exprs::TRUE;
+            if !straight_on {
+                waiting.overridden.push([path, when]);
+            }
             let waiting = &walk.waiting[at];
             let surely = straight_on
                 || walk.is_short(&[write, path, when])
@@ -312,12 +287,12 @@ impl<'a> Walk<'a> {
     }
 
     fn wait(&mut self, it: Waiting<'a>) {
-        let object = it.access.object;
-        let Some(granules) = granules(&self.model.object(object).footprint) else { return };
+        let granules = &self.model.granules;
+        let (area, of) = (granules.area(it.access.object), granules.of(it.access.object));
         let Ok(at) = u32::try_from(self.waiting.len()) else { return };
         self.waiting.push(it);
-        for granule in granules {
-            let list = self.lists.list(self.areas.of(object), granule);
+        for &granule in of {
+            let Some(list) = self.lists.list(area, granule) else { continue };
             list.retain(|&it| self.waiting[it as usize].open);
             if list.len() >= MOST_WAITING {
                 self.waiting[list.remove(0) as usize].open = false;
@@ -329,12 +304,11 @@ impl<'a> Walk<'a> {
     /// Everything that waits and shares memory with an object.
     fn each(&mut self, object: ObjectId, mut each: impl FnMut(&mut Self, usize)) {
         let place = &self.model.object(object).footprint;
-        let Some(granules) = granules(place) else { return };
-        let (area, is_one) = (self.areas.of(object), granules.len() == 1);
+        let (area, granules) = (self.model.granules.area(object), self.model.granules.of(object));
         let mut met = std::mem::take(&mut self.met);
         met.clear();
-        granules.for_each(|it| met.extend_from_slice(self.lists.get(area, it)));
-        if !is_one {
+        granules.iter().for_each(|it| met.extend_from_slice(self.lists.get(area, *it)));
+        if granules.len() > 1 {
             met.sort_unstable();
             met.dedup();
         }
@@ -369,11 +343,6 @@ impl<'a> Walk<'a> {
 
 fn is_local(place: &Footprint) -> bool {
     matches!(place.area, Area::Local | Area::LocalName(_) | Area::OpenInstance)
-}
-
-fn granules(place: &Footprint) -> Option<std::ops::Range<u32>> {
-    let range = place.start / GRANULE..place.end().saturating_sub(1) / GRANULE + 1;
-    (range.len() <= WIDEST as usize).then_some(range)
 }
 
 /// The writes of one object that are lost in one unit.

@@ -341,10 +341,14 @@ impl<'a> All<'a> {
     /// Of the operands of a statement of the stretch that begins at `start`, how far back each stood before in it; 0 where it
     /// did not.
     #[inline]
-    fn distances(&self, start: usize, at: usize, length: usize) -> impl Iterator<Item = u32> {
+    fn distances(&self, start: usize, at: usize, length: usize) -> impl ExactSizeIterator<Item = u32> {
         // As many as the unit has, which is below 4 GiB.
-        let from = (self.first_operand(at) - self.first_operand(start)) as u32;
-        self.operands(at, length).iter().zip(from..).map(|(it, at)| if it.back > at { 0 } else { it.back })
+        let mut from = (self.first_operand(at) - self.first_operand(start)) as u32;
+        self.operands(at, length).iter().map(move |it| {
+            let distance = if it.back > from { 0 } else { it.back };
+            from += 1;
+            distance
+        })
     }
 
     /// The operands that copies can share.
@@ -375,19 +379,23 @@ impl<'a> All<'a> {
         let mut alive = others.to_vec();
         let mut linked = Linked::default();
         let mut best: Option<(usize, usize, Vec<usize>)> = None;
+        let mut distances: Vec<u32> = Vec::new();
         for length in 1..=LONGEST {
             let last = at + length - 1;
             if self.unit(last) != self.unit(at) || covered.get(last).is_none_or(|it| *it) {
                 break;
             }
+            let Some(form) = self.form(last) else { break };
+            distances.clear();
+            distances.extend(self.distances(at, last, 1));
             let mut end = at + length;
             alive.retain(|&other| {
                 let there = other + length - 1;
                 let goes_on = end <= other
                     && self.unit(there) == self.unit(other)
                     && covered.get(there).is_some_and(|it| !it)
-                    && self.form(last).is_some_and(|it| self.form(there) == Some(it))
-                    && self.distances(at, last, 1).eq(self.distances(other, there, 1));
+                    && self.form(there) == Some(form)
+                    && is_same(&distances, self.distances(other, there, 1));
                 if goes_on {
                     end = other + length;
                 }
@@ -406,6 +414,10 @@ impl<'a> All<'a> {
         }
         best.map(|(_, length, copies)| (length, copies))
     }
+}
+
+fn is_same(list: &[u32], other: impl ExactSizeIterator<Item = u32>) -> bool {
+    list.len() == other.len() && list.iter().zip(other).all(|(a, b)| *a == b)
 }
 
 /// Whether the statements belong together: each works on something that one before it works on. What is the same in all

@@ -54,6 +54,36 @@ impl<'a> NodesByKind<'a> {
     }
 }
 
+/// What stands below a node. The tree's height is limited by the parser.
+fn gather<'a>(
+    parent: SyntaxNode<'a>,
+    nodes: &mut Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>,
+    comments: &mut Vec<TextRange>,
+) {
+    let mut children = parent.children_with_tokens();
+    while let Some(element) = children.next_node_or(|it| it == SyntaxKind::Comment) {
+        let node = match element {
+            SyntaxElement::Node(node) => node,
+            SyntaxElement::Token(comment) => {
+                comments.push(comment.text_range());
+                continue;
+            }
+        };
+        // Leaves are by far the most, and no rule asks for all of them.
+        match node.kind() {
+            SyntaxKind::ObjectRef
+            | SyntaxKind::NameRef
+            | SyntaxKind::Literal
+            | SyntaxKind::IlInstr
+            | SyntaxKind::Instr => {}
+            _ => nodes.push((parent, node)),
+        }
+        if !node.is_leaf() {
+            gather(node, nodes, comments);
+        }
+    }
+}
+
 /// One unit: its model, its tree, its text. Places are ranges relative to the unit.
 pub struct UnitCx<'a> {
     pub model: &'a UnitModel,
@@ -99,40 +129,9 @@ impl<'a> UnitCx<'a> {
 
     fn index(&self) -> &NodesByKind<'a> {
         self.nodes.get_or_init(|| {
-            let (mut nodes, mut comments) = (Vec::with_capacity(self.text.len() / 16), Vec::new());
-            let mut open = Vec::with_capacity(16);
-            let mut parent = self.parse.syntax();
-            let mut children = parent.children_with_tokens();
-            loop {
-                let node = match children.next_node_or(|it| it == SyntaxKind::Comment) {
-                    Some(SyntaxElement::Node(node)) => node,
-                    Some(SyntaxElement::Token(comment)) => {
-                        comments.push(comment.text_range());
-                        continue;
-                    }
-                    None => match open.pop() {
-                        Some(above) => {
-                            (parent, children) = above;
-                            continue;
-                        }
-                        None => break,
-                    },
-                };
-                // Leaves are by far the most, and no rule asks for all of them.
-                match node.kind() {
-                    SyntaxKind::ObjectRef | SyntaxKind::NameRef | SyntaxKind::Literal if node.is_leaf() => continue,
-                    SyntaxKind::ObjectRef
-                    | SyntaxKind::NameRef
-                    | SyntaxKind::Literal
-                    | SyntaxKind::IlInstr
-                    | SyntaxKind::Instr => {}
-                    _ => nodes.push((parent, node)),
-                }
-                if !node.is_leaf() {
-                    open.push((parent, std::mem::replace(&mut children, node.children_with_tokens())));
-                    parent = node;
-                }
-            }
+            let size = self.text.len();
+            let (mut nodes, mut comments) = (Vec::with_capacity(size / 16), Vec::with_capacity(size / 64));
+            gather(self.parse.syntax(), &mut nodes, &mut comments);
             NodesByKind::new(nodes, comments)
         })
     }

@@ -274,6 +274,29 @@ fn hash(expr: &Expr) -> u64 {
     FxBuildHasher.hash_one(expr)
 }
 
+/// Expressions that were met. Of nearly every condition these are few, which are found without a table.
+#[derive(Default)]
+struct Seen {
+    few: Vec<ExprId>,
+    more: FxHashSet<ExprId>,
+}
+
+impl Seen {
+    const FEW: usize = 16;
+
+    /// Whether it was not met before.
+    fn insert(&mut self, id: ExprId) -> bool {
+        if self.few.contains(&id) {
+            return false;
+        }
+        if self.few.len() < Self::FEW {
+            self.few.push(id);
+            return true;
+        }
+        self.more.insert(id)
+    }
+}
+
 impl Exprs {
     pub const FALSE: ExprId = ExprId(0);
     pub const TRUE: ExprId = ExprId(1);
@@ -365,7 +388,7 @@ impl Exprs {
 
     /// Every expression that a condition is made of, itself too, each once.
     pub fn each_part(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
-        let mut seen = FxHashSet::default();
+        let mut seen = Seen::default();
         let mut stack = vec![condition];
         while let Some(id) = stack.pop() {
             if seen.insert(id) {

@@ -6,6 +6,7 @@ pub mod chart;
 pub mod dfb;
 pub mod entity;
 pub mod expr;
+pub mod granules;
 pub mod ladder;
 pub mod layout;
 pub mod literal;

@@ -8,9 +8,9 @@ use rustc_hash::FxHashMap;
 use super::literal::{self, Value};
 use super::object::{self, Type};
 use super::unit::UnitModel;
-use crate::syntax::pl7::ast::{BinOp, Expr, Literal, ObjectRef, UnaryOp};
+use crate::syntax::pl7::ast::{BinOp, Expr, Literal, UnaryOp};
 use crate::syntax::pl7::functions;
-use crate::syntax::{SyntaxKind, SyntaxNode, WalkEvent};
+use crate::syntax::{SyntaxKind, SyntaxNode};
 
 /// What kind of value an expression has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -108,6 +108,7 @@ impl Kind {
 #[derive(Debug)]
 pub struct Kinds<'t> {
     model: &'t UnitModel,
+    /// Of operations: those of a chain are asked for one by one.
     known: RefCell<FxHashMap<SyntaxNode<'t>, Kind>>,
     /// Of objects whose address alone does not tell: several rules ask for each.
     types: RefCell<FxHashMap<SyntaxNode<'t>, Option<Type>>>,
@@ -119,37 +120,50 @@ impl<'t> Kinds<'t> {
         Self { model, known: RefCell::default(), types: RefCell::default() }
     }
 
-    /// Walks an expression once, operands before what they are operands of.
+    /// The tree's height is limited by the parser.
     pub fn of(&self, expr: Expr<'t>) -> Kind {
-        if let Some(kind) = self.known(expr) {
-            return kind;
-        }
-        for event in expr.syntax().walk() {
-            if let WalkEvent::Leave(node) = event
-                && !node.is_leaf()
-                && let Some(inner) = Expr::cast(node)
-                && !matches!(inner, Expr::Name(_) | Expr::Literal(_) | Expr::Object(_))
-                && !self.known.borrow().contains_key(&node)
-            {
-                let kind = self.compute(inner);
-                self.known.borrow_mut().insert(node, kind);
+        match expr {
+            Expr::Name(_) => Kind::Unknown,
+            Expr::Literal(it) => literal_kind(it),
+            Expr::Object(_) => self.type_of(expr).map_or(Kind::Unknown, Kind::of_type),
+            Expr::Paren(it) => self.operand(it.expr()),
+            Expr::Unary(it) => match it.op() {
+                Some(UnaryOp::Re | UnaryOp::Fe) => Kind::Bit,
+                _ => self.operand(it.operand()),
+            },
+            Expr::Bin(it) => match it.op() {
+                Some(op) if op.is_comparison() => Kind::Bit,
+                Some(BinOp::Assign) | None => Kind::Unknown,
+                Some(_) => {
+                    if let Some(kind) = self.known.borrow().get(&it.syntax()) {
+                        return *kind;
+                    }
+                    let (a, b) = it.operands();
+                    let kind = join(self.operand(a), self.operand(b));
+                    self.known.borrow_mut().insert(it.syntax(), kind);
+                    kind
+                }
+            },
+            Expr::Call(it) => {
+                let Some(function) = it.function() else { return Kind::Unknown };
+                match function.result {
+                    // The result is of the operand's kind: `SQRT`, `ABS`, `SHL` (PL7:3603-3642).
+                    Some(functions::Kind::Number | functions::Kind::Integer) => {
+                        match self.operand(it.arguments().into_iter().next().flatten()) {
+                            kind @ (Kind::Word | Kind::Double | Kind::Integer | Kind::Float) => kind,
+                            Kind::IntegerTable => Kind::Integer,
+                            _ => Kind::Unknown,
+                        }
+                    }
+                    Some(result) => Kind::of_parameter(result),
+                    None => Kind::Unknown,
+                }
             }
         }
-        self.operand(Some(expr))
     }
 
-    /// The kind of what has no operands, or what was found before.
-    fn known(&self, expr: Expr<'t>) -> Option<Kind> {
-        match expr {
-            Expr::Name(_) => Some(Kind::Unknown),
-            Expr::Literal(it) => Some(literal_kind(it)),
-            Expr::Object(it) => Some(self.object(it)),
-            _ => self.known.borrow().get(&expr.syntax()).copied(),
-        }
-    }
-
-    fn object(&self, it: ObjectRef<'t>) -> Kind {
-        self.type_of(Expr::Object(it)).map_or(Kind::Unknown, Kind::of_type)
+    fn operand(&self, expr: Option<Expr<'t>>) -> Kind {
+        expr.map_or(Kind::Unknown, |it| self.of(it))
     }
 
     /// Size and form of a direct object, behind parentheses; `None` for any other expression.
@@ -171,42 +185,6 @@ impl<'t> Kinds<'t> {
             };
             object.ok().map(|it| it.ty)
         })
-    }
-
-    /// Kind of an operand, whose turn was before.
-    fn operand(&self, expr: Option<Expr<'t>>) -> Kind {
-        expr.and_then(|it| self.known(it)).unwrap_or(Kind::Unknown)
-    }
-
-    fn compute(&self, expr: Expr<'t>) -> Kind {
-        match expr {
-            Expr::Name(_) | Expr::Literal(_) | Expr::Object(_) => self.operand(Some(expr)),
-            Expr::Paren(it) => self.operand(it.expr()),
-            Expr::Unary(it) => match it.op() {
-                Some(UnaryOp::Re | UnaryOp::Fe) => Kind::Bit,
-                _ => self.operand(it.operand()),
-            },
-            Expr::Bin(it) => match it.op() {
-                Some(op) if op.is_comparison() => Kind::Bit,
-                Some(BinOp::Assign) | None => Kind::Unknown,
-                Some(_) => join(self.operand(it.lhs()), self.operand(it.rhs())),
-            },
-            Expr::Call(it) => {
-                let Some(function) = it.function() else { return Kind::Unknown };
-                match function.result {
-                    // The result is of the operand's kind: `SQRT`, `ABS`, `SHL` (PL7:3603-3642).
-                    Some(functions::Kind::Number | functions::Kind::Integer) => {
-                        match it.arguments().into_iter().next().flatten().and_then(|it| self.known(it)) {
-                            Some(kind @ (Kind::Word | Kind::Double | Kind::Integer | Kind::Float)) => kind,
-                            Some(Kind::IntegerTable) => Kind::Integer,
-                            _ => Kind::Unknown,
-                        }
-                    }
-                    Some(result) => Kind::of_parameter(result),
-                    None => Kind::Unknown,
-                }
-            }
-        }
     }
 
     /// Kind that a function asks for at a position, and whether it says so in the manual we have.

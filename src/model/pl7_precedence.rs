@@ -35,12 +35,13 @@ impl Doubt {
 
 /// `NOT a = b`, `NOT a + b`: the `NOT` belongs to `a` alone.
 pub fn negated_operand(expr: BinExpr<'_>) -> Option<Doubt> {
-    let (Expr::Unary(negation), op) = (expr.lhs()?, expr.op()?) else { return None };
+    let Expr::Unary(negation) = expr.lhs()? else { return None };
+    let (op, operator) = expr.operation()?;
     let is_doubtful = negation.op() == Some(UnaryOp::Not) && op != BinOp::Assign && !op.is_logical();
     is_doubtful.then_some(Doubt {
         whole: expr.syntax().text_range(),
         first: vec![negation.syntax().text_range()],
-        operators: vec![expr.operator()?.text().to_ascii_uppercase()],
+        operators: vec![operator.text().to_ascii_uppercase()],
     })
 }
 
@@ -50,8 +51,9 @@ pub fn logical_chain<'t>(kinds: &Kinds<'t>, whole: BinExpr<'t>) -> Option<Doubt>
     let mut operators: Vec<String> = Vec::new();
     let mut stack = vec![whole];
     while let Some(expr) = stack.pop() {
-        let (Some(op), Some(operator)) = (expr.op().filter(|it| it.is_logical()), expr.operator()) else { continue };
-        for inner in [expr.lhs(), expr.rhs()] {
+        let Some((op, operator)) = expr.operation().filter(|it| it.0.is_logical()) else { continue };
+        let (lhs, rhs) = expr.operands();
+        for inner in [lhs, rhs] {
             let Some(Expr::Bin(inner)) = inner else { continue };
             if is_doubtful(kinds, expr, op, inner) {
                 first.push(inner.syntax().text_range());
@@ -75,6 +77,6 @@ fn is_doubtful<'t>(kinds: &Kinds<'t>, whole: BinExpr<'t>, op: BinOp, operand: Bi
     if inner.is_logical() {
         return inner != op;
     }
-    let others = [whole.lhs(), whole.rhs()];
-    inner.is_comparison() && others.into_iter().flatten().any(|it| kinds.of(it).is_integer())
+    let (lhs, rhs) = whole.operands();
+    inner.is_comparison() && lhs.into_iter().chain(rhs).any(|it| kinds.of(it).is_integer())
 }

@@ -21,7 +21,8 @@ pub enum Misfit {
 
 /// The target and the value of an assignment, where one of them is a table.
 pub fn of_assignment<'t>(kinds: &Kinds<'t>, it: AssignStmt<'t>) -> Option<(Type, Type)> {
-    let (a, value) = (kinds.type_of(it.target()?)?, it.value()?);
+    let (Some(target), Some(value)) = it.sides() else { return None };
+    let a = kinds.type_of(target)?;
     // A word takes the table itself, and not what an operation makes of it.
     if !a.is_table() && !matches!(value, Expr::Object(_) | Expr::Paren(_)) {
         return None;

@@ -15,6 +15,7 @@ use super::chart::{Chart, CodeLanguage};
 use super::dfb::Interface;
 use super::entity::{BlockName, Entity};
 use super::expr::{ExprId, Exprs, ObjectId};
+use super::granules::Granules;
 use super::ladder::Flaw;
 use super::layout::{DataType, Elementary, Field};
 use super::literal::{LiteralError, Value};
@@ -601,6 +602,7 @@ pub struct UnitModel {
     pub objects: Vec<Object>,
     /// Objects by their text; most texts name one object, whatever else is to tell two apart.
     pub(super) ids: HashTable<ObjectId>,
+    pub granules: Granules,
     pub exprs: Exprs,
     pub statements: Vec<Statement>,
     pub accesses: Vec<Access>,

@@ -162,7 +162,8 @@ impl<'t> SyntaxNode<'t> {
 
     /// This node and every node below it, in the order of the text.
     pub fn descendants(self) -> impl Iterator<Item = SyntaxNode<'t>> {
-        let mut open = vec![self.children_with_tokens()];
+        let mut open = Vec::with_capacity(8);
+        open.push(self.children_with_tokens());
         let below = std::iter::from_fn(move || {
             loop {
                 let Some(node) = open.last_mut()?.next_node() else {
@@ -180,7 +181,8 @@ impl<'t> SyntaxNode<'t> {
 
     /// Every token below this node, in the order of the text.
     pub fn descendant_tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> {
-        let mut open = vec![self.children_with_tokens()];
+        let mut open = Vec::with_capacity(8);
+        open.push(self.children_with_tokens());
         std::iter::from_fn(move || {
             loop {
                 match open.last_mut()?.next() {
@@ -335,7 +337,11 @@ impl<'t> Elements<'t> {
     /// The next that is a node, or a token of a kind that is wanted; no kind of blanks is.
     #[inline]
     pub fn next_node_or(&mut self, is_wanted: impl Fn(SyntaxKind) -> bool) -> Option<SyntaxElement<'t>> {
-        self.next = None;
+        if let Some(token) = self.next.take()
+            && is_wanted(token.kind())
+        {
+            return Some(SyntaxElement::Token(token));
+        }
         let stored = self.raw.as_mut()?;
         loop {
             let start = self.start;
@@ -444,7 +450,24 @@ pub trait AstNode<'t>: Copy {
 
     /// Tokens that are neither blanks nor comments.
     fn significant(self) -> impl Iterator<Item = SyntaxToken<'t>> + Clone {
-        self.syntax().tokens().filter(|it| !it.kind().is_trivia())
+        Significant(self.syntax().children_with_tokens())
+    }
+}
+
+/// See [`AstNode::significant`].
+#[derive(Debug, Clone)]
+struct Significant<'t>(Elements<'t>);
+
+impl<'t> Iterator for Significant<'t> {
+    type Item = SyntaxToken<'t>;
+
+    #[inline]
+    fn next(&mut self) -> Option<SyntaxToken<'t>> {
+        loop {
+            if let SyntaxElement::Token(it) = self.0.next_node_or(|it| !it.is_trivia())? {
+                return Some(it);
+            }
+        }
     }
 }
 
@@ -499,7 +522,8 @@ macro_rules! choices {
             }
 
             fn cast(node: $crate::syntax::SyntaxNode<'t>) -> Option<Self> {
-                $(if $node::can_cast(node.kind()) {
+                let kind = node.kind();
+                $(if $node::can_cast(kind) {
                     return $node::cast(node).map(Self::$variant);
                 })*
                 None

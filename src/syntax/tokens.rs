@@ -84,7 +84,7 @@ impl Significant {
 impl Tokens {
     /// Room for so many tokens, of which half are blanks.
     pub(super) fn with_capacity(tokens: usize) -> Self {
-        let (significant, trivia) = (Vec::with_capacity(tokens * 2 / 3 + 1), Vec::with_capacity(tokens / 2 + 1));
+        let (significant, trivia) = (Vec::with_capacity(tokens * 3 / 4 + 1), Vec::with_capacity(tokens / 2 + 1));
         Self { significant, trivia, ..Self::default() }
     }
 

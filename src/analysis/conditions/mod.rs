@@ -192,7 +192,7 @@ impl<'a> Space<'a> {
         if conditions.iter().all(|&it| it == Exprs::TRUE) {
             return Verdict::Possible;
         }
-        let mut conjuncts = Vec::new();
+        let mut conjuncts = Vec::with_capacity(ROOM);
         for &condition in conditions {
             spread(self.exprs, condition, &mut conjuncts);
         }
@@ -238,13 +238,25 @@ impl<'a> Space<'a> {
         if pairs.len() > FEW {
             return None;
         }
-        let (mut all, mut parts, mut with_part) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut all, mut parts) = (Vec::with_capacity(ROOM), Vec::with_capacity(ROOM));
+        let mut with_part = Vec::new();
         given.iter().for_each(|it| spread(self.exprs, *it, &mut all));
         if pairs.is_empty() {
             return self.by_form(&mut all);
         }
+        // Of a pair that is one condition, its opposite holds.
+        for &[a, b] in pairs.iter().filter(|it| it.contains(&Exprs::TRUE)) {
+            parts.clear();
+            spread(self.exprs, if a == Exprs::TRUE { b } else { a }, &mut parts);
+            if let [part] = *parts
+                && !matches!(self.exprs.get(part), Expr::Or(..))
+                && let Some(opposite) = self.exprs.find_complement(part)
+            {
+                spread(self.exprs, opposite, &mut all);
+            }
+        }
         let held = all.len();
-        let mut is_free = true;
+        let (mut is_free, mut asks) = (true, false);
         for pair in pairs {
             parts.clear();
             pair.iter().for_each(|it| spread(self.exprs, *it, &mut parts));
@@ -252,6 +264,11 @@ impl<'a> Space<'a> {
             if parts.is_empty() {
                 return Some(Verdict::Never);
             }
+            // They do not hold both anyway.
+            if parts.iter().any(|it| self.is_opposed(*it, |it| all[..held].contains(&it))) {
+                continue;
+            }
+            asks = true;
             // What is free of conditions is false while they hold. A disjunction is false where all that it is made of is.
             let start = all.len();
             is_free = is_free
@@ -264,6 +281,9 @@ impl<'a> Space<'a> {
                     is_open && self.by_form(&mut with_part) == Some(Verdict::Possible)
                 });
         }
+        if !asks {
+            return self.by_form(&mut all);
+        }
         is_free.then_some(Verdict::Possible)
     }
 
@@ -274,8 +294,13 @@ impl<'a> Space<'a> {
 
     /// Whether a condition is always true, always false, or neither, wherever another one holds.
     pub fn constant(&self, given: ExprId, condition: ExprId) -> Option<bool> {
-        if given == Exprs::TRUE && self.is_bit(condition) {
-            return None;
+        if given == Exprs::TRUE {
+            // Where nothing ties the atoms of a conjunction, each can be true, and false.
+            let mut conjuncts = Vec::with_capacity(ROOM);
+            spread(self.exprs, condition, &mut conjuncts);
+            if self.by_form(&mut conjuncts) == Some(Verdict::Possible) && !conjuncts.is_empty() {
+                return None;
+            }
         }
         if self.exclusive(given, condition) { Some(false) } else { self.implies(given, condition).then_some(true) }
     }
@@ -316,31 +341,36 @@ impl<'a> Space<'a> {
         conjuncts.sort_unstable();
         conjuncts.dedup();
         let has = |it: ExprId| conjuncts.binary_search(&it).is_ok();
-        // Also `NOT (a AND b)` beside `a` and `b`, as the ELSE of an IF gives it.
-        let opposed = |&it: &ExprId| {
-            self.exprs.find_complement(it).is_some_and(has)
-                || matches!(*self.exprs.get(it), Expr::Not(inner) if matches!(*self.exprs.get(inner), Expr::And(a, b) if {
-                    let mut parts = Vec::new();
-                    spread(self.exprs, a, &mut parts);
-                    spread(self.exprs, b, &mut parts);
-                    parts.into_iter().all(has)
-                }))
-        };
-        if conjuncts.iter().any(opposed) {
+        if conjuncts.iter().any(|it| self.is_opposed(*it, has)) {
             return Some(Verdict::Never);
         }
         conjuncts.retain(|&it| it != Exprs::TRUE);
         (conjuncts.is_empty() || self.are_free(conjuncts)).then_some(Verdict::Possible)
     }
 
-    /// Whether conjuncts, none of which is another's complement, are bits, their absences, and comparisons of different
-    /// terms with constants that the terms can have: no law ties any of them to another.
+    /// Whether a condition is the opposite of one that holds: also `NOT (a AND b)` beside `a` and `b`, as the ELSE of an IF
+    /// gives it.
+    fn is_opposed(&self, it: ExprId, has: impl Fn(ExprId) -> bool) -> bool {
+        if self.exprs.find_complement(it).is_some_and(&has) {
+            return true;
+        }
+        let Expr::Not(inner) = *self.exprs.get(it) else { return false };
+        let Expr::And(a, b) = *self.exprs.get(inner) else { return false };
+        let mut parts = Vec::with_capacity(ROOM);
+        spread(self.exprs, a, &mut parts);
+        spread(self.exprs, b, &mut parts);
+        parts.into_iter().all(has)
+    }
+
+    /// Whether conjuncts, none of which is another's complement, are bits, edges of other bits, the absences of such, and
+    /// comparisons of different terms with constants that the terms can have: no law ties any of them to another.
     fn are_free(&self, conjuncts: &[ExprId]) -> bool {
-        let (mut bits, mut terms) = (Vec::new(), Vec::new());
+        let (mut bits, mut edges, mut terms) = (Vec::with_capacity(ROOM), Vec::new(), Vec::new());
         for &it in conjuncts {
             let atom = if let Expr::Not(inner) = *self.exprs.get(it) { inner } else { it };
             match *self.exprs.get(atom) {
                 Expr::Read { object, .. } => bits.push(object),
+                Expr::Edge { object, .. } => edges.push(object),
                 Expr::Compare(op, a, b) => {
                     let (op, term, constant) = match (self.constant_of(a), self.constant_of(b)) {
                         (None, Some(constant)) => (op, a, constant),
@@ -357,6 +387,12 @@ impl<'a> Space<'a> {
                 _ => return false,
             }
         }
+        for edge in edges {
+            if bits.contains(&edge) {
+                return false;
+            }
+            bits.push(edge);
+        }
         terms.sort_unstable();
         let is_part = |term: &ExprId| {
             self.read_of(*term).is_some_and(|(word, _)| {
@@ -364,12 +400,6 @@ impl<'a> Space<'a> {
             })
         };
         terms.windows(2).all(|it| it[0] != it[1]) && !terms.iter().any(is_part)
-    }
-
-    /// Whether a condition asks one bit, and nothing else.
-    fn is_bit(&self, condition: ExprId) -> bool {
-        let atom = if let Expr::Not(inner) = *self.exprs.get(condition) { inner } else { condition };
-        matches!(*self.exprs.get(atom), Expr::Read { .. })
     }
 
     /// Whether a condition asks a step time for what it never is, or always is.
@@ -514,6 +544,9 @@ impl<'a> Space<'a> {
         Some(if self.family.has_blocks() { (width / 8 - 1 - at / 8) * 8 + at % 8 } else { at })
     }
 }
+
+/// Most conditions have no more conjuncts.
+const ROOM: usize = 8;
 
 /// The conjuncts of a condition, at most 256 of them looked into.
 fn spread(exprs: &Exprs, condition: ExprId, out: &mut Vec<ExprId>) {

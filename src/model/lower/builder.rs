@@ -8,7 +8,8 @@ use smol_str::SmolStr;
 
 use crate::model::entity::Entity;
 use crate::model::expr::{ExprId, Exprs, ObjectId};
-use crate::model::object::{Area, Object};
+use crate::model::granules::{Granules, Numbers};
+use crate::model::object::Object;
 use crate::model::unit;
 use crate::model::unit::{
     Access, Call, DeadCause, Demand, DemandKind, Jump, Label, Loop, LoopKind, Mode, Oddity, OddityKind, Statement,
@@ -22,12 +23,11 @@ use crate::syntax::Language;
 /// branches and ends; statements take the path of the moment.
 pub(super) struct Builder {
     pub(super) model: UnitModel,
-    /// Area of each object, interned.
-    areas: FxHashMap<Area, u32>,
-    area_of: Vec<u32>,
-    writes: FxHashMap<(u32, u32), Vec<Write>>,
-    /// Version of the last write to somewhere in an area.
-    area_writes: FxHashMap<u32, u32>,
+    numbers: Numbers,
+    /// Of each granule.
+    writes: Vec<Vec<Write>>,
+    /// Of each area, the version of the last write to somewhere in it.
+    area_writes: Vec<u32>,
     /// Version of the last event after which everything may have changed.
     wiped: u32,
     /// Version of the last call of code that is not part of this unit.
@@ -57,12 +57,6 @@ struct Write {
     sure: Option<ExprId>,
 }
 
-/// Bits of an area that one list of writes covers.
-const GRANULE: u32 = 32;
-
-/// A footprint over more granules than this counts as the whole area.
-const WIDEST: u32 = 64;
-
 impl Builder {
     /// `len`: length of the code, for room in the tables.
     pub(super) fn new(entity: Entity, language: Language, heading: TextRange, len: TextSize) -> Self {
@@ -72,9 +66,10 @@ impl Builder {
         let model = UnitModel {
             entity,
             language,
-            objects: Vec::with_capacity(len / 64),
-            ids: HashTable::with_capacity(len / 64),
-            exprs: Exprs::with_capacity(len / 32),
+            objects: Vec::with_capacity(len / 32),
+            ids: HashTable::with_capacity(len / 32),
+            granules: Granules::with_capacity(len / 32),
+            exprs: Exprs::with_capacity(len / 24),
             statements: Vec::with_capacity(len / 64),
             accesses: Vec::with_capacity(len / 28),
             labels: Vec::new(),
@@ -108,10 +103,9 @@ impl Builder {
         };
         Self {
             model,
-            areas: FxHashMap::default(),
-            area_of: Vec::with_capacity(len / 64),
-            writes: FxHashMap::default(),
-            area_writes: FxHashMap::default(),
+            numbers: Numbers::default(),
+            writes: Vec::with_capacity(len / 32),
+            area_writes: Vec::new(),
             wiped: 0,
             called: 0,
             clock: 0,
@@ -157,9 +151,7 @@ impl Builder {
             Entry::Occupied(found) => return *found.get(),
             Entry::Vacant(entry) => entry.insert(id),
         };
-        let next = index(self.areas.len());
-        let area = *self.areas.entry(object.footprint.area.clone()).or_insert(next);
-        self.area_of.push(area);
+        self.model.granules.push(&mut self.numbers, &object.footprint);
         self.model.objects.push(object);
         id
     }
@@ -242,17 +234,17 @@ impl Builder {
 
     /// Version of the value that the object has here, and whether it may stem from outside this run of the unit.
     fn version(&self, object: ObjectId) -> (u32, bool) {
-        let area = self.area_of[object.0 as usize];
+        let area = self.model.granules.area(object);
         let data = &self.model.objects[object.0 as usize];
-        let whole = self.area_writes.get(&area).copied().unwrap_or(0).max(self.wiped);
+        let whole = self.area_writes.get(area as usize).copied().unwrap_or(0).max(self.wiped);
         if !data.is_fixed() {
             return (self.clock, true);
         }
         let mut version = whole;
         let mut exposed = true;
         let (start, end) = (data.footprint.start, data.footprint.end());
-        for granule in granules(start, end).unwrap_or(0..0) {
-            for write in self.writes.get(&(area, granule)).into_iter().flatten() {
+        for &granule in self.model.granules.of(object) {
+            for write in self.writes.get(granule as usize).into_iter().flatten() {
                 if write.start < end && start < write.end {
                     version = version.max(write.version);
                     let covers = write.start <= start && end <= write.end;
@@ -271,16 +263,16 @@ impl Builder {
     fn write(&mut self, object: ObjectId, sure: bool) -> u32 {
         self.clock += 1;
         let version = self.clock;
-        let area = self.area_of[object.0 as usize];
         let data = &self.model.objects[object.0 as usize];
         let (start, end) = (data.footprint.start, data.footprint.end());
-        let Some(granules) = granules(start, end).filter(|_| data.is_fixed()) else {
-            self.area_writes.insert(area, version);
+        let granules = self.model.granules.of(object);
+        if granules.is_empty() || !data.is_fixed() {
+            *slot(&mut self.area_writes, self.model.granules.area(object)) = version;
             return version;
-        };
+        }
         let (path, called) = (self.path, self.called);
-        for granule in granules {
-            let list = self.writes.entry((area, granule)).or_default();
+        for &granule in granules {
+            let list = slot(&mut self.writes, granule);
             match list.iter_mut().find(|it| it.start == start && it.end == end) {
                 Some(write) => {
                     let before = write.sure.filter(|_| write.version > called);
@@ -534,9 +526,13 @@ impl Builder {
     }
 }
 
-fn granules(start: u32, end: u32) -> Option<std::ops::Range<u32>> {
-    let range = start / GRANULE..end.saturating_sub(1) / GRANULE + 1;
-    (range.len() <= WIDEST as usize).then_some(range)
+/// A place in a table that grows as it is used.
+fn slot<T: Default + Clone>(table: &mut Vec<T>, at: u32) -> &mut T {
+    let at = at as usize;
+    if table.len() <= at {
+        table.resize(at + 1, T::default());
+    }
+    &mut table[at]
 }
 
 /// Indices are counted in `u32`: a unit is below 4 GiB.

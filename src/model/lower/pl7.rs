@@ -307,8 +307,9 @@ impl Pl7 {
     }
 
     fn binary(&mut self, it: &ast::BinExpr) -> (ExprId, Kind) {
-        let (a, a_kind) = self.optional(it.lhs());
-        let (b, b_kind) = self.optional(it.rhs());
+        let (lhs, rhs) = it.operands();
+        let (a, a_kind) = self.optional(lhs);
+        let (b, b_kind) = self.optional(rhs);
         let numeric = a_kind.is_number() || b_kind.is_number();
         self.b.model.mixes_floats |= a_kind.may_mix(b_kind);
         let number = if [a_kind, b_kind].contains(&Kind::Float) { Kind::Float } else { Kind::Number };
@@ -320,7 +321,7 @@ impl Pl7 {
         if matches!(op, BinOp::Add | BinOp::Sub | BinOp::Mul | BinOp::Div) {
             self.b.computes(it.syntax().text_range());
         }
-        if let (BinOp::Div | BinOp::Rem, Some(divisor)) = (op, it.rhs()) {
+        if let (BinOp::Div | BinOp::Rem, Some(divisor)) = (op, rhs) {
             self.b.demand(DemandKind::Divisor, b, divisor.syntax().text_range());
         }
         let exprs = self.b.exprs();
@@ -421,11 +422,9 @@ impl Pl7 {
     /// `target := value`.
     pub(super) fn assignment(&mut self, it: &ast::AssignStmt) {
         let range = it.syntax().text_range();
-        let (value, kind) = match it.value() {
-            Some(value) => self.expr(&value),
-            None => (self.b.exprs().opaque(), Kind::Unknown),
-        };
-        let Some((object, at)) = it.target().and_then(|it| self.place(&it)) else { return };
+        let (target, value) = it.sides();
+        let (value, kind) = self.optional(value);
+        let Some((object, at)) = target.and_then(|it| self.place(&it)) else { return };
         self.assign(object, value, kind, at, range);
     }
 

@@ -80,14 +80,17 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
+    /// Whether an ASCII character is next.
     pub(super) fn at(&self, char: char) -> bool {
-        self.rest.starts_with(char)
+        self.rest.as_bytes().first().is_some_and(|it| char::from(*it) == char)
     }
 
     pub(super) fn eat(&mut self, char: char) -> bool {
-        let rest = self.rest.strip_prefix(char);
-        self.rest = rest.unwrap_or(self.rest);
-        rest.is_some()
+        let found = self.at(char);
+        if found {
+            self.rest = self.rest.get(1..).unwrap_or_default();
+        }
+        found
     }
 
     pub(super) fn need(&mut self, char: char) -> Result<(), AddressError> {

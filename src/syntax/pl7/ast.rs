@@ -395,32 +395,32 @@ impl<'t> StmtList<'t> {
 
 impl<'t> AssignStmt<'t> {
     pub fn target(self) -> Option<Expr<'t>> {
-        let (before, sign, mut behind) = self.before();
-        if sign == Some(SyntaxKind::Arrow) { behind.find_map(Expr::cast) } else { before }
+        self.sides().0
     }
 
     /// `:=`, or the `=` that stands in its place; `->` of PL7-2.
     pub fn operator(self) -> Option<SyntaxToken<'t>> {
-        self.0.tokens().find(|it| is_assignment_sign(it.kind()))
+        self.significant().find(|it| is_assignment_sign(it.kind()))
     }
 
     pub fn value(self) -> Option<Expr<'t>> {
-        let (before, sign, mut behind) = self.before();
-        if sign == Some(SyntaxKind::Arrow) { before } else { behind.find_map(Expr::cast) }
+        self.sides().1
     }
 
-    /// The expression before the sign, the sign, and the nodes behind it. In `127 -> W10` the target stands last.
-    fn before(self) -> (Option<Expr<'t>>, Option<SyntaxKind>, impl Iterator<Item = SyntaxNode<'t>>) {
+    /// The target and the value. In `127 -> W10` the target stands last.
+    pub fn sides(self) -> (Option<Expr<'t>>, Option<Expr<'t>>) {
         let mut elements = self.0.children_with_tokens();
-        let mut expr = None;
-        let sign = elements.by_ref().find_map(|it| match it {
-            SyntaxElement::Node(node) => {
-                expr = expr.or_else(|| Expr::cast(node));
-                None
+        let (mut before, mut behind, mut sign) = (None, None, None);
+        while behind.is_none()
+            && let Some(element) = elements.next_node_or(is_assignment_sign)
+        {
+            match element {
+                SyntaxElement::Token(it) => sign = sign.or(Some(it.kind())),
+                SyntaxElement::Node(it) if sign.is_some() => behind = Expr::cast(it),
+                SyntaxElement::Node(it) => before = before.or_else(|| Expr::cast(it)),
             }
-            SyntaxElement::Token(it) => Some(it.kind()).filter(|it| is_assignment_sign(*it)),
-        });
-        (expr, sign, elements.filter_map(SyntaxElement::into_node))
+        }
+        if sign == Some(SyntaxKind::Arrow) { (behind, before) } else { (before, behind) }
     }
 }
 
@@ -597,15 +597,26 @@ impl<'t> ExprStmt<'t> {
 
 impl<'t> BinExpr<'t> {
     pub fn lhs(self) -> Option<Expr<'t>> {
-        self.children().nth(0)
+        self.child()
     }
 
     pub fn operator(self) -> Option<SyntaxToken<'t>> {
-        self.0.tokens().find(|it| BinOp::of(*it).is_some())
+        self.operation().map(|it| it.1)
     }
 
     pub fn op(self) -> Option<BinOp> {
-        BinOp::of(self.operator()?)
+        self.operation().map(|it| it.0)
+    }
+
+    /// The operator as it is written.
+    pub fn operation(self) -> Option<(BinOp, SyntaxToken<'t>)> {
+        self.significant().find_map(|it| Some((BinOp::of(it)?, it)))
+    }
+
+    /// The operands, the left one first.
+    pub fn operands(self) -> (Option<Expr<'t>>, Option<Expr<'t>>) {
+        let mut operands = self.children();
+        (operands.next(), operands.next())
     }
 
     pub fn rhs(self) -> Option<Expr<'t>> {
@@ -615,11 +626,11 @@ impl<'t> BinExpr<'t> {
 
 impl<'t> UnaryExpr<'t> {
     pub fn operator(self) -> Option<SyntaxToken<'t>> {
-        self.0.tokens().find(|it| UnaryOp::of(*it).is_some())
+        self.significant().find(|it| UnaryOp::of(*it).is_some())
     }
 
     pub fn op(self) -> Option<UnaryOp> {
-        UnaryOp::of(self.operator()?)
+        self.significant().find_map(UnaryOp::of)
     }
 
     pub fn operand(self) -> Option<Expr<'t>> {
@@ -669,7 +680,7 @@ pub enum LiteralValue {
 
 impl<'t> Literal<'t> {
     pub fn token(self) -> Option<SyntaxToken<'t>> {
-        self.0.tokens().find(|it| !it.kind().is_trivia())
+        self.significant().next()
     }
 
     /// `None` for a number that no 64 bits hold, for a digit that its base does not have, and for an elision.
