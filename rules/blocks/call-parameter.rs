@@ -116,7 +116,7 @@ fn unknown_symbols(program: &ProgramIndex<'_>, sink: &mut Sink<'_, Site>) {
             BlockName::Number(..) => None,
         },
     };
-    let blocks: FxHashSet<_> = program.places().filter_map(data_block).collect();
+    let blocks: FxHashSet<_> = program.places(|_| true).filter_map(data_block).collect();
     for it in program.objects_that(|it| it == Class::Symbol, |_| true) {
         let quoted = it.object.text.starts_with('"');
         let Area::Symbol(name) = &it.object.footprint.area else { continue };

@@ -22,7 +22,7 @@ pub(crate) fn check(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
 /// Of a type whose code is understood: what the code does not name. A public variable may serve the rest of the program.
 fn items(cx: &ProgramCx<'_>, sink: &mut Sink<'_, Site>) {
     let outside: LazyCell<FxHashSet<(u32, SmolStr)>, _> = LazyCell::new(|| {
-        let symbols = cx.program.places().filter(|it| it.class == Class::Symbol);
+        let symbols = cx.program.places(|it| it == Class::Symbol);
         let items = symbols.filter_map(|it| {
             let (instance, item) = it.text.split_once('.')?;
             let (unit, _) = cx.program.dfb_of(instance)?;

@@ -224,7 +224,7 @@ fn system_ns(program: &ProgramIndex<'_>, series: Series) -> u64 {
     let tasks = [SystemTask::Terminal, SystemTask::Controller, SystemTask::ReadInputs, SystemTask::WriteOutputs];
     let own: u64 = tasks.into_iter().filter_map(|it| it.shortest_ns(series)).sum();
     let mut modules: FxHashMap<&str, (u32, u32)> = FxHashMap::default();
-    for it in program.places().filter(|it| matches!(it.class, Class::Input | Class::Output)) {
+    for it in program.places(|it| matches!(it, Class::Input | Class::Output)) {
         let channels = it.footprint.end();
         match &it.footprint.area {
             Area::InputChannels(module) => {

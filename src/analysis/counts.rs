@@ -129,11 +129,24 @@ pub fn beyond_blocks<'a>(numbers: &[Numbered<'a>], target: &Target) -> Vec<Beyon
     found.into_iter().map(|it| it.1).collect()
 }
 
-/// The object with the highest number of a kind that is not beyond its count, with that number.
-pub fn highest<'a>(numbers: &[Numbered<'a>], target: &Target, what: Counted) -> Option<(&'a ObjectUses<'a>, u32)> {
+/// The object with the highest number of a kind that is not beyond its count.
+pub fn highest<'a>(numbers: &[Numbered<'a>], target: &Target, what: Counted) -> Option<&'a ObjectUses<'a>> {
     let count = target.count(what)?;
     let existing = numbers.iter().filter(|it| it.what == what && it.last < count.value);
-    existing.max_by_key(|it| it.last).map(|it| (it.uses, it.last))
+    existing.max_by_key(|it| it.last).map(|it| it.uses)
+}
+
+/// How many blocks of a kind a program takes: they are counted from 0 up to the highest number that is not beyond its count.
+pub fn taken<'o>(
+    family: Family,
+    objects: impl Iterator<Item = &'o Object>,
+    target: &Target,
+    what: Counted,
+) -> Option<u32> {
+    let count = target.count(what)?;
+    let numbers = objects.filter_map(|it| number(family, it));
+    let last = numbers.filter(|it| it.0 == what && it.1 < count.value).map(|it| it.1).max()?;
+    Some(last.saturating_add(1))
 }
 
 impl Beyond<'_> {

@@ -308,9 +308,10 @@ impl Islands {
         self.modes[id as usize] = modes;
     }
 
-    /// The objects that are used, in no order.
-    pub fn used(&self) -> impl Iterator<Item = &Object> {
-        self.objects.iter().filter(|it| !it.users.is_empty()).map(|it| &it.fact.object)
+    /// The objects of some classes that are used, in no order.
+    pub fn used(&self, class: impl Fn(Class) -> bool) -> impl Iterator<Item = &Object> {
+        let of_class = self.objects.iter().zip(&self.classes).filter(move |it| class(*it.1)).map(|it| it.0);
+        of_class.filter(|it| !it.users.is_empty()).map(|it| &it.fact.object)
     }
 
     /// Of the program whose facts were taken last.
@@ -411,9 +412,9 @@ impl Islands {
         class: impl Fn(Class) -> bool,
         wanted: impl Fn(&Object) -> bool,
     ) -> Vec<ObjectUses<'a>> {
-        let of_class = (0..).zip(&self.classes).filter(|it| class(*it.1)).map(|it| it.0);
-        let is_wanted = |it: &Known| !it.users.is_empty() && wanted(&it.fact.object);
-        self.collect(skeleton, of_class.filter(|it: &u32| is_wanted(&self.objects[*it as usize])))
+        let of_class = (0..).zip(&self.objects).zip(&self.classes).filter(|it| class(*it.1)).map(|it| it.0);
+        let wanted = of_class.filter(|it| !it.1.users.is_empty() && wanted(&it.1.fact.object));
+        self.collect(skeleton, wanted.map(|it| it.0))
     }
 
     fn collect<'a>(&self, skeleton: &Skeleton<'a>, objects: impl Iterator<Item = u32>) -> Vec<ObjectUses<'a>> {

@@ -402,11 +402,12 @@ impl<'a> ProgramIndex<'a> {
         Self::part(self.skeleton.clone(), self.objects_that(class, wanted), Box::default(), self.summary())
     }
 
-    /// What is used, whatever for, in no order.
-    pub fn places(&self) -> impl Iterator<Item = &Object> {
+    /// What is used of some classes, whatever for, in no order.
+    pub fn places(&self, class: impl Fn(Class) -> bool + Copy) -> impl Iterator<Item = &Object> {
         let islands = self.islands.get();
         let collected = islands.is_none().then(|| self.objects.iter().map(|it| it.object));
-        collected.into_iter().flatten().chain(islands.into_iter().flat_map(|it| it.used()))
+        let collected = collected.into_iter().flatten().filter(move |it| class(it.class));
+        collected.chain(islands.into_iter().flat_map(move |it| it.used(class)))
     }
 
     /// The units whose own objects, which no other unit can name, are judged with the others.

@@ -19,7 +19,7 @@ pub struct Used<'a> {
 
 impl<'a> Used<'a> {
     pub fn new(program: &'a ProgramIndex<'a>) -> Self {
-        let places = || program.places();
+        let places = || program.places(|_| true);
         let indexed = places().filter(|it| it.indexed).map(|it| &it.footprint.area).collect();
         Self { memory: places().map(|it| &it.footprint).collect(), indexed, blocks: blocks(program) }
     }
