@@ -13,7 +13,10 @@ pub(crate) fn check(cx: &UnitCx<'_>, sink: &mut Sink<'_, TextRange>) {
     if cx.model.entity.block_kind() != Some(BlockKind::Pb) {
         return;
     }
-    let mut found = cx.instrs().filter_map(|it| Some((it.mnemonic()?, kind(op(it, mnemonics)?)?)));
+    let mut found = cx.instrs().filter_map(|it| {
+        let what = kind(op(it, mnemonics)?)?;
+        Some((it.mnemonic()?, what))
+    });
     let Some((first, what)) = found.next() else { return };
     sink.report(first.range, format!("`{}` is {what}, which program blocks do not have", first.text))
         .related_all(found.map(|(it, what)| (it.range, format!("`{}` is {what}", it.text))));

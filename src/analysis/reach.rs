@@ -21,7 +21,7 @@ use super::program::ProgramIndex;
 use super::stuck::Stuck;
 use crate::model::chart::{Graph, StepKind, StepName};
 use crate::model::entity::{Family, Task};
-use crate::model::expr::{ExprId, Exprs, ObjectId};
+use crate::model::expr::{Expr, ExprId, Exprs, ObjectId};
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::Mode;
 
@@ -576,25 +576,21 @@ impl<'p, 'a> Net<'p, 'a> {
             group[at] = as_index(first);
             last = Some((first, end));
         }
-        let support = |it: &Crossing| match it.guard {
-            Guarded::By(guard) => {
-                let mut objects: Vec<u32> = Vec::new();
-                self.exprs.each_object(guard, |it| objects.extend(group.get(it.0 as usize)));
-                objects.sort_unstable();
-                objects.dedup();
-                objects
-            }
-            Guarded::Never | Guarded::Unknown => Vec::new(),
-        };
-        self.supports = self.crossings.iter().map(support).collect();
-        let weight = |it: &Crossing| {
-            let mut weight = 1;
+        let made_of = |it: &Crossing| {
+            let (mut objects, mut weight): (Vec<u32>, usize) = (Vec::new(), 1);
             if let Guarded::By(guard) = it.guard {
-                self.exprs.each_part(guard, |_| weight += 1);
+                self.exprs.each_part(guard, |part| {
+                    weight += 1;
+                    if let Expr::Read { object, .. } | Expr::Edge { object, .. } = self.exprs.get(part) {
+                        objects.extend(group.get(object.0 as usize));
+                    }
+                });
             }
-            weight
+            objects.sort_unstable();
+            objects.dedup();
+            (objects, weight)
         };
-        self.weights = self.crossings.iter().map(weight).collect();
+        (self.supports, self.weights) = self.crossings.iter().map(made_of).unzip();
     }
 
     fn find_presets(&mut self, program: &ProgramIndex<'a>) {
@@ -837,12 +833,13 @@ impl<'p, 'a> Net<'p, 'a> {
         let mut seen: FxHashSet<Vec<bool>> = FxHashSet::default();
         let mut answer = Answer::Never;
         let valid_in = crossings.first().and_then(|it| reached.valid_in.get(it)).into_iter().flatten();
-        for situation in valid_in.map(|it| &reached.situations[*it as usize]) {
-            if !crossings.iter().all(|&it| walker.is_valid(situation, it)) {
-                continue;
-            }
+        let situations = valid_in
+            .map(|it| &reached.situations[*it as usize])
+            .filter(|it| crossings.iter().all(|&crossing| walker.is_valid(it, crossing)));
+        // Where no step bit is asked for, one situation is as good as any.
+        for situation in situations.take(if asked.is_empty() { 1 } else { usize::MAX }) {
             let values: Vec<bool> = asked.iter().map(|it| has(situation, it.0)).collect();
-            if !seen.insert(values.clone()) {
+            if !values.is_empty() && !seen.insert(values.clone()) {
                 continue;
             }
             let steps = asked.iter().zip(values).map(|(it, value)| (it.1, value));

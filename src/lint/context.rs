@@ -119,7 +119,7 @@ impl<'a> UnitCx<'a> {
 
     /// The instructions of a statement list, in the order of the text.
     pub fn instrs(&self) -> impl Iterator<Item = Instr<'a>> {
-        self.parse.syntax().descendants().filter_map(Instr::cast)
+        self.parse.syntax().outermost(SyntaxKind::Instr).filter_map(Instr::cast)
     }
 
     /// The comments that are closed, in the order of the text.

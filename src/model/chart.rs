@@ -277,21 +277,16 @@ impl Chart {
 
     /// Joins vertical neighbours, and what links join.
     pub fn join(&mut self) {
-        let mut grid = rustc_hash::FxHashMap::default();
-        let cells = |it: &[Option<Cell>], of: fn(u32) -> Element| -> Vec<(Cell, Element)> {
-            it.iter().zip(0..).filter_map(|(cell, at)| Some(((*cell)?, of(at)))).collect()
-        };
-        let steps: Vec<_> = self.steps.iter().map(|it| it.cell).collect();
-        let transitions: Vec<_> = self.transitions.iter().map(|it| it.cell).collect();
-        let connectors: Vec<_> = self.connectors.iter().map(|it| it.cell).collect();
-        let all = [
-            cells(&steps, Element::Step),
-            cells(&transitions, Element::Transition),
-            cells(&connectors, Element::Connector),
-        ];
-        for (cell, element) in all.into_iter().flatten() {
+        let steps = self.steps.iter().map(|it| it.cell).zip((0..).map(Element::Step));
+        let transitions = self.transitions.iter().map(|it| it.cell).zip((0..).map(Element::Transition));
+        let connectors = self.connectors.iter().map(|it| it.cell).zip((0..).map(Element::Connector));
+        let elements = self.steps.len() + self.transitions.len() + self.connectors.len();
+        let mut grid = rustc_hash::FxHashMap::with_capacity_and_hasher(elements, rustc_hash::FxBuildHasher);
+        for (cell, element) in steps.chain(transitions).chain(connectors) {
             // Of two elements in one cell, which is a mistake, the first counts.
-            grid.entry(cell).or_insert(element);
+            if let Some(cell) = cell {
+                grid.entry(cell).or_insert(element);
+            }
         }
         let mut pairs: Vec<(Element, Element)> = Vec::new();
         for (&cell, &element) in &grid {
@@ -301,7 +296,7 @@ impl Chart {
         }
         // The order of a hash table means nothing.
         pairs.sort_by_key(|it| (key(it.0), key(it.1)));
-        let mut joined = rustc_hash::FxHashSet::default();
+        let mut joined = rustc_hash::FxHashSet::with_capacity_and_hasher(pairs.len(), rustc_hash::FxBuildHasher);
         for (above, below) in pairs {
             if self.connect(above, below) {
                 joined.insert((key(above), key(below)));

@@ -164,6 +164,48 @@ impl Expr {
     }
 }
 
+/// Expressions that were met, each once.
+#[derive(Debug)]
+struct Met {
+    all: Vec<ExprId>,
+    /// Those of `all`, once they are many.
+    many: FxHashSet<ExprId>,
+}
+
+impl Met {
+    /// Fewer than these are looked through, more are hashed.
+    const FEW: usize = 48;
+
+    fn new() -> Self {
+        Self { all: Vec::with_capacity(16), many: FxHashSet::default() }
+    }
+
+    /// Whether the expression was not met before.
+    fn add(&mut self, id: ExprId) -> bool {
+        let is_new = if self.all.len() < Self::FEW {
+            !self.all.contains(&id)
+        } else {
+            if self.many.is_empty() {
+                self.many.extend(self.all.iter().copied());
+            }
+            self.many.insert(id)
+        };
+        if is_new {
+            self.all.push(id);
+        }
+        is_new
+    }
+
+    fn count(&self) -> usize {
+        self.all.len()
+    }
+
+    fn sorted(mut self) -> Vec<ExprId> {
+        self.all.sort_unstable();
+        self.all
+    }
+}
+
 /// The expressions of one unit.
 #[derive(Debug, Clone)]
 pub struct Exprs {
@@ -274,29 +316,6 @@ fn hash(expr: &Expr) -> u64 {
     FxBuildHasher.hash_one(expr)
 }
 
-/// Expressions that were met. Of nearly every condition these are few, which are found without a table.
-#[derive(Default)]
-struct Seen {
-    few: Vec<ExprId>,
-    more: FxHashSet<ExprId>,
-}
-
-impl Seen {
-    const FEW: usize = 16;
-
-    /// Whether it was not met before.
-    fn insert(&mut self, id: ExprId) -> bool {
-        if self.few.contains(&id) {
-            return false;
-        }
-        if self.few.len() < Self::FEW {
-            self.few.push(id);
-            return true;
-        }
-        self.more.insert(id)
-    }
-}
-
 impl Exprs {
     pub const FALSE: ExprId = ExprId(0);
     pub const TRUE: ExprId = ExprId(1);
@@ -343,19 +362,20 @@ impl Exprs {
 
     /// The condition with all it is made of, unless that is more than `most` expressions.
     pub fn cut(&self, condition: ExprId, most: usize) -> Option<Guard> {
-        let mut seen = FxHashSet::default();
-        let mut stack = vec![condition];
-        while let Some(id) = stack.pop() {
-            if seen.insert(id) {
+        let mut met = Met::new();
+        let mut next = Some(condition);
+        let mut stack = Vec::new();
+        while let Some(id) = next {
+            if met.add(id) {
                 self.get(id).operands(|it| stack.push(it));
             }
-            if seen.len() > most {
+            if met.count() > most {
                 return None;
             }
+            next = stack.pop();
         }
         // Ids grow from operands to what they are operands of.
-        let mut ids: Vec<ExprId> = seen.into_iter().collect();
-        ids.sort_unstable();
+        let ids = met.sorted();
         let place = |id: ExprId| ExprId(ids.binary_search(&id).ok().and_then(|it| u32::try_from(it).ok()).unwrap_or(0));
         let node = |id: &ExprId| match self.get(*id) {
             Expr::Read { object, .. } => Expr::Read { object: *object, version: 0 },
@@ -388,13 +408,15 @@ impl Exprs {
 
     /// Every expression that a condition is made of, itself too, each once.
     pub fn each_part(&self, condition: ExprId, mut each: impl FnMut(ExprId)) {
-        let mut seen = Seen::default();
-        let mut stack = vec![condition];
-        while let Some(id) = stack.pop() {
-            if seen.insert(id) {
+        let mut met = Met::new();
+        let mut next = Some(condition);
+        let mut stack = Vec::new();
+        while let Some(id) = next {
+            if met.add(id) {
                 self.get(id).operands(|it| stack.push(it));
                 each(id);
             }
+            next = stack.pop();
         }
     }
 

@@ -267,12 +267,14 @@ impl<T: Copy + Default> Lists<T> {
         for at in 1..next.len() {
             next[at] += next[at - 1];
         }
-        let mut lists = Self { items: vec![T::default(); next[count]], ends: next[1..].to_vec() };
+        let mut sorted = vec![T::default(); next[count]];
         for (list, item) in items {
-            lists.items[next[list]] = item;
+            sorted[next[list]] = item;
             next[list] += 1;
         }
-        lists
+        // Each list has grown from its start to its end.
+        next.truncate(count);
+        Self { items: sorted, ends: next }
     }
 }
 

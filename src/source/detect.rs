@@ -1,6 +1,7 @@
 //! What a file is, by its content first and its extension second: in the field `.LD .ST .GR7 .SEQ .STL .SDF .DB .TXT`
 //! all have several meanings.
 
+mod lead;
 mod sample;
 mod tally;
 

@@ -9,10 +9,12 @@ pub(super) fn word(text: &str) -> (&str, &str) {
     let is_part = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
     let ascii = text.bytes().position(|it| !is_part(it)).unwrap_or(text.len());
     // Nearly all words end at a sign or a blank.
-    let rest = text.get(ascii..).unwrap_or_default();
-    let more = match rest.starts_with(|it: char| it.is_ascii()) {
-        true => 0,
-        false => rest.find(|it: char| !it.is_alphanumeric() && it != '_').unwrap_or(rest.len()),
+    let more = match text.as_bytes().get(ascii) {
+        Some(it) if !it.is_ascii() => {
+            let rest = text.get(ascii..).unwrap_or_default();
+            rest.find(|it: char| !it.is_alphanumeric() && it != '_').unwrap_or(rest.len())
+        }
+        _ => 0,
     };
     text.split_at(ascii + more)
 }
@@ -98,6 +100,9 @@ fn numbered_block(text: &str) -> Option<(BlockName, &str)> {
 /// Reads the heading of a printed STEP 5 block: `PB 10`, `FB5`, `BAUSTEIN : OB 1`, alone on its line or with what a print
 /// says of it behind (`LAE=22`).
 pub(super) fn step5_heading(line: &str) -> Option<Entity> {
+    if !line.starts_with(|it: char| it.is_ascii_alphabetic()) {
+        return None;
+    }
     let names: &[&str] = if line.starts_with(['B', 'b']) { &["BAUSTEIN", "BLOCK", "BLOC", "BLOQUE"] } else { &[] };
     let named = names.iter().find_map(|it| {
         let rest = strip_prefix_ignore_case(line, it)?;

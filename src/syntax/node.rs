@@ -162,21 +162,30 @@ impl<'t> SyntaxNode<'t> {
 
     /// This node and every node below it, in the order of the text.
     pub fn descendants(self) -> impl Iterator<Item = SyntaxNode<'t>> {
+        std::iter::once(self).chain(self.below(|_| true))
+    }
+
+    /// The nodes below this one that are of a kind, in the order of the text. Below them none is looked for.
+    pub fn outermost(self, kind: SyntaxKind) -> impl Iterator<Item = SyntaxNode<'t>> {
+        self.below(move |it| it.kind() != kind).filter(move |it| it.kind() == kind)
+    }
+
+    /// The nodes below this one, in the order of the text, and of those that are opened what is below.
+    fn below(self, opens: impl Fn(SyntaxNode<'t>) -> bool) -> impl Iterator<Item = SyntaxNode<'t>> {
         let mut open = Vec::with_capacity(8);
         open.push(self.children_with_tokens());
-        let below = std::iter::from_fn(move || {
+        std::iter::from_fn(move || {
             loop {
                 let Some(node) = open.last_mut()?.next_node() else {
                     open.pop();
                     continue;
                 };
-                if !node.is_leaf() {
+                if !node.is_leaf() && opens(node) {
                     open.push(node.children_with_tokens());
                 }
                 return Some(node);
             }
-        });
-        std::iter::once(self).chain(below)
+        })
     }
 
     /// Every token below this node, in the order of the text.
@@ -337,9 +346,7 @@ impl<'t> Elements<'t> {
     /// The next that is a node, or a token of a kind that is wanted; no kind of blanks is.
     #[inline]
     pub fn next_node_or(&mut self, is_wanted: impl Fn(SyntaxKind) -> bool) -> Option<SyntaxElement<'t>> {
-        if let Some(token) = self.next.take()
-            && is_wanted(token.kind())
-        {
+        if let Some(token) = self.next.take().filter(|it| is_wanted(it.kind())) {
             return Some(SyntaxElement::Token(token));
         }
         let stored = self.raw.as_mut()?;

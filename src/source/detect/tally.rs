@@ -6,15 +6,14 @@ use super::super::heading::{
     HeadingLanguage, block_end, block_header, exchange_block, pl7_heading, step5_code, step5_heading,
     strip_prefix_ignore_case, word,
 };
+use super::lead::Lead;
 use super::{Detected, Extension, Pl7Text, unsupported};
 use crate::model::entity::{BlockKind, BlockName, Entity, Family};
 use crate::model::object;
-use crate::syntax::pl7::ladder_words;
 use crate::syntax::step5::symbols;
 
 /// Whether a line declares a variable, with an address or a type.
-fn is_variable(line: &str) -> bool {
-    let (name, rest) = word(line);
+fn is_variable(name: &str, rest: &str) -> bool {
     let rest = rest.trim_start();
     let address = strip_prefix_ignore_case(rest, "AT ").map(str::trim_start);
     !name.is_empty()
@@ -25,7 +24,8 @@ fn is_variable(line: &str) -> bool {
 fn declared_by_pl7_2(address: &str) -> bool {
     let end = address.find(|it: char| it.is_whitespace() || matches!(it, ':' | ';' | '(')).unwrap_or(address.len());
     let address = address.get(..end.min(LONGEST_PL7_2)).unwrap_or_default();
-    !address.starts_with('%') && object::pl72::class_of(address).is_some_and(|it| it != object::Class::Fault)
+    address.starts_with(|it: char| it.is_ascii_alphabetic())
+        && object::pl72::class_of(address).is_some_and(|it| it != object::Class::Fault)
 }
 
 /// Of this many lines of STEP 5 that STEP 7 has too, one is its own at least: the end of a segment, a call.
@@ -42,34 +42,72 @@ pub(super) enum Kind {
 
 /// Which of the signs that tell languages apart a line has. To look through it once costs less than to look for each.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Signs(u8);
+pub(super) struct Signs(u32);
 
 impl Signs {
-    const SLASH: u8 = 1;
-    const PERCENT: u8 = 1 << 1;
-    const COMMA: u8 = 1 << 2;
-    const GREATER: u8 = 1 << 3;
-    const COLON: u8 = 1 << 4;
-    /// `A`, in any case.
-    const A: u8 = 1 << 5;
+    /// `//`
+    const SLASHES: u32 = 1;
+    /// `->`
+    const ARROW: u32 = 1 << 1;
+    /// `AT`, in any case.
+    const AT: u32 = 1 << 2;
+    /// `EB` and `R_`, in any case.
+    const EB: u32 = 1 << 3;
+    const R_: u32 = 1 << 4;
+    /// `RE` or `FE`.
+    const EDGE: u32 = 1 << 5;
+    const PERCENT: u32 = 1 << 8;
+    const COMMA: u32 = 1 << 9;
+    const COLON: u32 = 1 << 10;
+    const SEMICOLON: u32 = 1 << 11;
+    /// A small letter, or what may be one.
+    const SMALL: u32 = 1 << 12;
 
-    const OF: [u8; 256] = {
+    /// The first bits are the signs of two bytes that a byte may end.
+    const PAIRS: u32 = 0xFF;
+    /// Where the signs of two bytes are that a byte may begin.
+    const BEGINS: u32 = 16;
+
+    const OF: [u32; 256] = {
         let mut of = [0; 256];
-        of[b'/' as usize] = Self::SLASH;
-        of[b'%' as usize] = Self::PERCENT;
-        of[b',' as usize] = Self::COMMA;
-        of[b'>' as usize] = Self::GREATER;
-        of[b':' as usize] = Self::COLON;
-        of[b'A' as usize] = Self::A;
-        of[b'a' as usize] = Self::A;
+        let mut byte = 0;
+        while byte < of.len() {
+            of[byte] = match byte as u8 {
+                b'/' => Self::SLASHES | Self::SLASHES << Self::BEGINS,
+                b'-' => Self::ARROW << Self::BEGINS,
+                b'>' => Self::ARROW,
+                b'A' | b'a' => Self::AT << Self::BEGINS,
+                b'T' | b't' => Self::AT,
+                b'R' => (Self::R_ | Self::EDGE) << Self::BEGINS,
+                b'r' => Self::R_ << Self::BEGINS,
+                b'_' => Self::R_,
+                b'F' => Self::EDGE << Self::BEGINS,
+                b'E' => Self::EDGE | Self::EB << Self::BEGINS,
+                b'e' => Self::EB << Self::BEGINS,
+                b'B' | b'b' => Self::EB,
+                b'%' => Self::PERCENT,
+                b',' => Self::COMMA,
+                b':' => Self::COLON,
+                b';' => Self::SEMICOLON,
+                _ => 0,
+            };
+            if byte >= 0x80 || (byte as u8).is_ascii_lowercase() {
+                of[byte] |= Self::SMALL;
+            }
+            byte += 1;
+        }
         of
     };
 
     pub(super) fn of(line: &str) -> Self {
-        Self(line.bytes().fold(0, |signs, it| signs | Self::OF[usize::from(it)]))
+        let add = |(signs, before): (u32, u32), it| {
+            let own = Self::OF[usize::from(it)];
+            (signs | own & (before >> Self::BEGINS | !Self::PAIRS), own)
+        };
+        Self(line.bytes().fold((0, 0), add).0)
     }
 
-    fn has(self, sign: u8) -> bool {
+    fn has(self, sign: u32) -> bool {
         self.0 & sign != 0
     }
 }
@@ -162,7 +200,7 @@ impl Tally {
     /// text has `//` outside of comments.
     pub(super) fn add_line(&mut self, code: &str) {
         let signs = Signs::of(code);
-        let code = if signs.has(Signs::SLASH) { before_line_comment(code) } else { code }.trim();
+        let code = if signs.has(Signs::SLASHES) { before_line_comment(code) } else { code }.trim();
         // Parentheses and the dots of an omission alone mean nothing.
         // A semicolon starts a comment of STEP 5.
         if code.contains(|c: char| !matches!(c, ')' | '.' | '…')) && !(code.starts_with(';') && code.len() > 1) {
@@ -223,17 +261,19 @@ impl Tally {
         self.symbols_step5 += u32::from(symbols::row(line).is_some());
     }
 
+    /// `line`: without blanks at its ends.
     fn add_code(&mut self, line: &str, signs: Signs) {
         let has_object = signs.has(Signs::PERCENT) && has_pl7_object(line);
         let is_pl7 = line.starts_with('!') || has_object;
         let code = strip_pl7_label(line.strip_prefix('!').unwrap_or(line).trim_start());
-        let first = upper(word(code).0);
-        let first = &*first;
+        let (name, rest) = word(code);
+        let first = &*upper(name);
+        let lead = Lead::of(first);
         self.pl7 += u32::from(is_pl7);
         self.add_operands(line, signs, has_object);
-        self.dfb += u32::from(is_dfb_line(code, first));
-        self.variables += u32::from((signs.has(Signs::COLON) || signs.has(Signs::A)) && is_variable(code));
-        match pl7_statement(code, first, is_pl7) {
+        self.dfb += u32::from(is_dfb_line(code, rest, lead, signs));
+        self.variables += u32::from(signs.has(Signs::COLON | Signs::AT) && is_variable(name, rest));
+        match pl7_statement(code, rest, lead, is_pl7) {
             Some(Pl7Text::Il) => self.il += 1,
             Some(Pl7Text::St) => {
                 self.st += 1;
@@ -241,42 +281,41 @@ impl Tally {
             }
             Some(Pl7Text::Ld | Pl7Text::Gr7 | Pl7Text::Sfc) | None => {}
         }
-        match first {
-            "RUNG" | "END_RUNG" => self.rung += 1,
-            // Words without an underscore are words of other languages too.
-            _ if first.contains('_') && ladder_words::lookup(first).is_some() => {
-                self.rung += 1;
-                self.cells += 1;
-            }
-            "NB_PAGES" | "END_PAGE" | "T_S_OR_LINK" | "S_T_OR_LINK" | "T_S_AND_LINK" | "S_T_AND_LINK"
-            | "SOURCE_CONNECTOR" | "DEST_CONNECTOR" => {
-                self.chart += 1;
-                self.pages += 1;
-            }
-            "INITIAL_STEP" | "END_STEP" | "END_TRANSITION" | "MACRO_STEP" | "IN_STEP" | "OUT_STEP" => self.chart += 1,
-            "STEP" | "TRANSITION" | "ACTION" | "END_ACTION" | "PAGE" if is_chart_line(code, first) => {
-                self.chart_words += 1;
-                self.steps += u32::from(first == "STEP");
-            }
-            "SEQUENCE" | "END_SEQUENCE" | "GRAPH7" => self.graph += 1,
-            "VAR_GLOBAL" | "PROGRAM" | "END_PROGRAM" | "CONFIGURATION" | "VAR_EXTERNAL" => self.iec += 1,
-            "VAR" | "VAR_INPUT" | "VAR_OUTPUT" | "VAR_IN_OUT" | "END_VAR" => {
-                self.iec += 1;
-                self.declarations += 1;
-            }
-            "VAR_TEMP" | "STRUCT" | "END_STRUCT" | "BEGIN" | "NETWORK" | "TITLE" | "VERSION" | "AUTHOR" | "FAMILY"
-            | "KNOW_HOW_PROTECT" => {
-                self.declarations += 1;
-                self.step7_words += 1;
-            }
-            "IF" | "ELSIF" | "ELSE" | "END_IF" | "CASE" | "END_CASE" | "FOR" | "END_FOR" | "WHILE" | "END_WHILE"
-            | "REPEAT" | "END_REPEAT" | "REGION" => self.scl += 1,
-            _ if is_step5(code) => self.step5 += 1,
-            _ if is_step7_instruction(code) => self.step7 += 1,
-            _ if is_step7_with_symbol(code) => self.step7_symbols += 1,
-            _ if is_declaration(code) => self.declarations += 1,
-            _ if !is_pl7 && is_prose(code) => self.prose += 1,
-            _ => {}
+        if lead.is(Lead::RUNG) {
+            self.rung += 1;
+        } else if lead.is(Lead::CELL) {
+            self.rung += 1;
+            self.cells += 1;
+        } else if lead.is(Lead::PAGE) {
+            self.chart += 1;
+            self.pages += 1;
+        } else if lead.is(Lead::CHART) {
+            self.chart += 1;
+        } else if lead.is(Lead::CHART_LINE) && is_chart_line(first, rest) {
+            self.chart_words += 1;
+            self.steps += u32::from(first == "STEP");
+        } else if lead.is(Lead::GRAPH) {
+            self.graph += 1;
+        } else if lead.is(Lead::IEC) {
+            self.iec += 1;
+        } else if lead.is(Lead::SECTION) {
+            self.iec += 1;
+            self.declarations += 1;
+        } else if lead.is(Lead::STEP7) {
+            self.declarations += 1;
+            self.step7_words += 1;
+        } else if lead.is(Lead::SCL) {
+            self.scl += 1;
+        } else if is_step5(code, signs) {
+            self.step5 += 1;
+        } else if is_step7_instruction(code, signs) {
+            self.step7 += 1;
+        } else if is_step7_with_symbol(code) {
+            self.step7_symbols += 1;
+        } else if signs.has(Signs::COLON) && is_declaration(code) {
+            self.declarations += 1;
+        } else if !is_pl7 && is_prose(code, signs) {
+            self.prose += 1;
         }
     }
 
@@ -403,36 +442,27 @@ fn is_dfb_header(block: &Entity, line: &str) -> bool {
 }
 
 /// Whether a line of a function block can only be one of a DFB type (PL7:5376-5391, PL7:3571-3576, PL7:3808-3811).
-fn is_dfb_line(code: &str, first: &str) -> bool {
-    match first {
-        "VAR_PUBLIC" | "VAR_PRIVATE" | "FTON" | "FTOF" | "FTP" | "FPULSOR" => return true,
-        // Statement list has `SET` alone, and `INC 5`.
-        "SET" | "RESET" | "INC" | "DEC" => {
-            let operand = code.get(first.len()..).unwrap_or_default().trim();
-            return operand.starts_with(|it: char| it.is_alphabetic() || it == '_') && operand.ends_with(';');
-        }
-        _ => {}
+fn is_dfb_line(code: &str, rest: &str, lead: Lead, signs: Signs) -> bool {
+    if lead.is(Lead::DFB) {
+        return true;
     }
-    let bytes = code.as_bytes();
-    let is_behind = |at: usize, letters: [u8; 2]| at.checked_sub(1).is_some_and(|it| letters.contains(&bytes[it]));
-    // Nearly no line has letters that one of the words could be made of.
-    let may_be_type = memchr::memchr3_iter(b'_', b'B', b'b', bytes).any(|at| match bytes[at] {
-        b'_' => is_behind(at, [b'R', b'r']),
-        _ => is_behind(at, [b'E', b'e']),
-    });
+    // Statement list has `SET` alone, and `INC 5`.
+    if lead.is(Lead::DFB_OPERAND) {
+        let operand = rest.trim();
+        return operand.starts_with(|it: char| it.is_alphabetic() || it == '_') && operand.ends_with(';');
+    }
     let mut words = code.split(|it: char| !(it.is_alphanumeric() || it == '_'));
-    let may_be_edge = memchr::memchr_iter(b'E', bytes).any(|at| is_behind(at, [b'R', b'F']));
     let mut blanks = code.split_whitespace().map(|it| it.trim_start_matches('(')).peekable();
-    may_be_type
+    signs.has(Signs::EB | Signs::R_)
         && words.any(|it| ["EBOOL", "AR_X", "AR_W", "AR_D", "AR_R"].iter().any(|ty| ty.eq_ignore_ascii_case(it)))
-        || may_be_edge
+        || signs.has(Signs::EDGE)
             && std::iter::from_fn(|| Some((blanks.next()?, blanks.peek()?.chars().next())))
                 .any(|(word, next)| matches!(word, "RE" | "FE") && next.is_some_and(char::is_alphabetic))
 }
 
 /// Whether a line that starts with a common word is one of a chart: `STEP 3 AT (C 4,L 3) :`, `TRANSITION FROM X0 TO X1`.
-fn is_chart_line(code: &str, first: &str) -> bool {
-    let rest = word(code).1.trim_start();
+fn is_chart_line(first: &str, rest: &str) -> bool {
+    let rest = rest.trim_start();
     let next = word(rest).0;
     match first {
         "STEP" => !next.is_empty() && rest.contains(':'),
@@ -515,7 +545,7 @@ fn has_pl7_2_object(line: &str, signs: Signs) -> bool {
     let is_address = |it: &str| object::pl72::class_of(it).is_some_and(|it| it != object::Class::Fault);
     let is_named = || memchr::memchr_iter(b',', bytes).filter_map(word_with).any(is_address);
     let has_arrow =
-        || signs.has(Signs::GREATER) && memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
+        || signs.has(Signs::ARROW) && memchr::memchr_iter(b'>', bytes).any(|at| at > 0 && bytes[at - 1] == b'-');
     let is_transfer = || line.contains("END_BLOCK") && !line.contains(":=");
     let address = || {
         let at = memchr::memchr_iter(b'A', bytes).find(|&at| at > 0 && bytes[at - 1..].starts_with(b" AT "))?;
@@ -523,7 +553,7 @@ fn has_pl7_2_object(line: &str, signs: Signs) -> bool {
     };
     signs.has(Signs::COMMA) && is_named()
         || has_arrow() && is_transfer()
-        || signs.has(Signs::A) && address().is_some_and(|it| declared_by_pl7_2(it.trim_start()))
+        || signs.has(Signs::AT) && address().is_some_and(|it| declared_by_pl7_2(it.trim_start()))
 }
 
 /// Whether a line has an address with a percent sign that PL7-2 does not have. A converter may write the sign before the
@@ -551,42 +581,43 @@ fn strip_pl7_label(line: &str) -> &str {
 }
 
 /// The language of one line of PL7; `None` if it has none of its own.
-fn pl7_statement(code: &str, first: &str, has_object: bool) -> Option<Pl7Text> {
-    let rest = code.get(first.len()..).unwrap_or_default().trim();
-    match first {
-        "LD" | "LDN" | "LDR" | "LDF" | "AND" | "ANDN" | "ANDR" | "ANDF" | "OR" | "ORN" | "ORR" | "ORF" | "XOR"
-        | "XORN" | "XORR" | "XORF" | "ST" | "STN" | "S" | "R" | "JMP" | "JMPC" | "JMPCN" | "IN" | "CU" | "CD"
-        | "BLK" => {
-            let symbol = first.len() > 1 && {
-                let (name, rest) = word(rest);
-                !name.is_empty() && rest.is_empty()
-            };
-            let operand = has_object && rest.starts_with(['%', '[', '(']);
-            (symbol || operand).then_some(if rest.ends_with("THEN") || rest.ends_with(';') {
-                Pl7Text::St
-            } else {
-                Pl7Text::Il
-            })
-        }
-        "MPS" | "MRD" | "MPP" | "RETC" | "RETCN" | "ENDC" | "ENDCN" | "END_BLK" | "OUT_BLK" if rest.is_empty() => {
-            Some(Pl7Text::Il)
-        }
-        "IF" | "ELSIF" | "ELSEIF" | "WHILE" | "FOR" | "UNTIL" | "SET" | "RESET" | "INC" | "DEC" if has_object => {
-            Some(Pl7Text::St)
-        }
-        _ if code.starts_with('[') && has_object => Some(Pl7Text::Il),
-        _ if code.ends_with(';') && code.contains(":=") => Some(Pl7Text::St),
-        _ => None,
+fn pl7_statement(code: &str, rest: &str, lead: Lead, has_object: bool) -> Option<Pl7Text> {
+    if lead.is(Lead::PL7_OPERAND) {
+        let operand = rest.trim();
+        let symbol = code.len() > rest.len() + 1 && {
+            let (name, rest) = word(operand);
+            !name.is_empty() && rest.is_empty()
+        };
+        let is_st = operand.ends_with("THEN") || operand.ends_with(';');
+        return (symbol || has_object && operand.starts_with(['%', '[', '('])).then_some(if is_st {
+            Pl7Text::St
+        } else {
+            Pl7Text::Il
+        });
+    }
+    if lead.is(Lead::PL7_BARE) && rest.trim().is_empty() {
+        Some(Pl7Text::Il)
+    } else if lead.is(Lead::PL7_STATEMENT) && has_object {
+        Some(Pl7Text::St)
+    } else if code.starts_with('[') && has_object {
+        Some(Pl7Text::Il)
+    } else if code.ends_with(';') && code.contains(":=") {
+        Some(Pl7Text::St)
+    } else {
+        None
     }
 }
 
-/// Whether a line is a statement list instruction, with an optional label before it.
-fn is_step7_instruction(line: &str) -> bool {
+/// Whether a line, which no blanks begin or end, is a statement list instruction, with an optional label before it.
+fn is_step7_instruction(line: &str, signs: Signs) -> bool {
     let line = strip_step7_label(line);
-    let line = line.split(';').next().unwrap_or_default().trim();
-    let end = line.find(|c: char| c.is_ascii_alphanumeric()).unwrap_or(line.len());
-    let operator = line.get(..end).unwrap_or_default().trim_end();
-    if !operator.is_empty() {
+    let line = match signs.has(Signs::SEMICOLON) {
+        true => line.split(';').next().unwrap_or_default().trim_end(),
+        false => line,
+    };
+    if line.starts_with(|it: char| !it.is_ascii_alphanumeric()) {
+        let end = line.find(|c: char| c.is_ascii_alphanumeric()).unwrap_or(line.len());
+        let operator = line.get(..end).unwrap_or_default().trim_end();
         let rest = line.get(operator.len()..).unwrap_or_default();
         return match operator {
             "=" => is_step7_operand(rest),
@@ -601,31 +632,28 @@ fn is_step7_instruction(line: &str) -> bool {
         };
     }
     let (mnemonic, rest) = word(line);
-    let operand = rest.trim();
-    match &*upper(mnemonic) {
-        "U" | "UN" | "A" | "AN" | "ON" | "X" | "XN" => operand == "(" || is_step7_operand(operand),
-        "O" => matches!(operand, "" | "(") || is_step7_operand(operand),
-        "S" | "R" | "FP" | "FN" | "L" | "T" | "SI" | "SV" | "SE" | "SS" | "SA" | "SP" | "SD" | "SF" | "FR" | "ZV"
-        | "ZR" | "CU" | "CD" | "LC" | "AUF" | "OPN" | "INC" | "DEC" | "NOP" | "BLD" => is_step7_operand(operand),
-        "SPA" | "SPB" | "SPBN" | "SPBB" | "SPBNB" | "SPBI" | "SPBIN" | "SPL" | "SPM" | "SPMZ" | "SPN" | "SPO"
-        | "SPP" | "SPPZ" | "SPS" | "SPU" | "SPZ" | "JU" | "JC" | "JCN" | "JCB" | "JNB" | "JBI" | "JNBI" | "JL"
-        | "JM" | "JMZ" | "JN" | "JO" | "JP" | "JPZ" | "JOS" | "JUO" | "JZ" | "LOOP" => {
-            let (label, rest) = word(operand);
-            !label.is_empty() && rest.is_empty()
-        }
-        "CALL" | "UC" | "CC" => {
-            let called = operand.split([',', '(']).next().unwrap_or_default();
-            is_step7_operand(called)
-        }
-        "UW" | "OW" | "XOW" | "UD" | "OD" | "XOD" | "AW" | "AD" | "SSI" | "SSD" | "SLW" | "SRW" | "SLD" | "SRD"
-        | "RLD" | "RRD" | "LAR1" | "LAR2" | "TAR1" | "TAR2" => operand.is_empty() || is_step7_operand(operand),
-        "BE" | "BEA" | "BEB" | "BEU" | "BEC" | "SET" | "CLR" | "NOT" | "SAVE" | "TAK" | "ENT" | "LEAVE" | "INVI"
-        | "INVD" | "NEGI" | "NEGD" | "NEGR" | "BTI" | "ITB" | "BTD" | "DTB" | "ITD" | "DTR" | "RND" | "TRUNC"
-        | "TAW" | "TAD" | "CAW" | "CAD" | "TAR" | "CAR" | "TDB" | "CDB" | "MCRA" | "MCRD" | "MOD" | "RLDA" | "RRDA" => {
-            operand.is_empty()
-        }
-        "MCR" => operand == "(",
-        _ => false,
+    let lead = Lead::of(&upper(mnemonic));
+    let operand = rest.trim_start();
+    if lead.is(Lead::CHECK) {
+        operand == "(" || is_step7_operand(operand)
+    } else if lead.is(Lead::OR) {
+        matches!(operand, "" | "(") || is_step7_operand(operand)
+    } else if lead.is(Lead::OPERAND) {
+        is_step7_operand(operand)
+    } else if lead.is(Lead::JUMP) {
+        let (label, rest) = word(operand);
+        !label.is_empty() && rest.is_empty()
+    } else if lead.is(Lead::CALL) {
+        let called = operand.split([',', '(']).next().unwrap_or_default();
+        is_step7_operand(called)
+    } else if lead.is(Lead::OPTIONAL) {
+        operand.is_empty() || is_step7_operand(operand)
+    } else if lead.is(Lead::ALONE) {
+        operand.is_empty()
+    } else if lead.is(Lead::OPEN) {
+        operand == "("
+    } else {
+        false
     }
 }
 
@@ -635,11 +663,12 @@ fn is_step7_with_symbol(line: &str) -> bool {
         Some(operand) => ("=", operand),
         None => word(line),
     };
+    if !["U", "UN", "A", "AN", "O", "ON", "X", "XN", "S", "R", "="].contains(&mnemonic) {
+        return false;
+    }
     let (_, rest) = word(operand.trim_start());
     let index = rest.strip_prefix('[').map_or(Some(rest), |index| index.split_once(']').map(|(_, rest)| rest));
-    ["U", "UN", "A", "AN", "O", "ON", "X", "XN", "S", "R", "="].contains(&mnemonic)
-        && operand.starts_with([' ', '\t'])
-        && index.is_some_and(|rest| matches!(rest.trim(), "" | ";"))
+    operand.starts_with([' ', '\t']) && index.is_some_and(|rest| matches!(rest.trim(), "" | ";"))
 }
 
 /// What follows `M001:`. A label alone is left as it is.
@@ -653,12 +682,24 @@ fn strip_step7_label(line: &str) -> &str {
     }
 }
 
-/// Prefixes of the absolute operands of STEP 7 and STEP 5 before the number, in both mnemonic sets.
-const STEP7_AREAS: [&str; 48] = [
-    "E", "EB", "EW", "ED", "A", "AB", "AW", "AD", "I", "IB", "IW", "ID", "Q", "QB", "QW", "QD", "M", "MB", "MW", "MD",
-    "L", "LB", "LW", "LD", "T", "Z", "C", "DBX", "DBB", "DBW", "DBD", "DIX", "DIB", "DIW", "DID", "PEB", "PEW", "PED",
-    "PAB", "PAW", "PAD", "PIW", "PQW", "OB", "FB", "FC", "DB", "DI",
-];
+/// Whether letters stand before the number in absolute operands of STEP 7 or STEP 5, in either mnemonic set.
+fn is_step7_area(letters: &str) -> bool {
+    let mut upper = [0; 3];
+    let Some(upper) = upper.get_mut(..letters.len()) else { return false };
+    upper.copy_from_slice(letters.as_bytes());
+    upper.make_ascii_uppercase();
+    matches!(
+        &*upper,
+        [b'E' | b'A' | b'I' | b'Q' | b'M' | b'L' | b'T' | b'Z' | b'C']
+            | [b'E' | b'A' | b'I' | b'Q' | b'M' | b'L', b'B' | b'W' | b'D']
+            | [b'D', b'B' | b'I', b'X' | b'B' | b'W' | b'D']
+            | [b'P', b'E' | b'A', b'B' | b'W' | b'D']
+            | [b'P', b'I' | b'Q', b'W']
+            | [b'O', b'B']
+            | [b'F', b'B' | b'C']
+            | [b'D', b'B' | b'I']
+    )
+}
 
 /// Whether a text is an operand of STEP 7 and nothing else: `E 0.0`, `DB1.DBW 2`, `#tem`, `"X0"`, `« X0 »`, `S5T#1S`,
 /// `W [AR1,P#0.0]`, `-5`.
@@ -686,40 +727,41 @@ fn is_step7_operand(text: &str) -> bool {
     if rest.starts_with('#') && rest.len() > 1 {
         return prefix.len() <= 4 && !rest.contains(char::is_whitespace);
     }
-    if ["SFC", "SFB", "UDT", "STW", "AR1", "AR2", "DBNO", "DBLG", "DINO", "DILG", "OV", "OS", "BIE", "BR", "UO"]
+    let end = text.bytes().position(|it| !it.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (area, number) = text.split_at(end);
+    if !is_step7_area(area) {
+        return [
+            "SFC", "SFB", "UDT", "STW", "AR1", "AR2", "DBNO", "DBLG", "DINO", "DILG", "OV", "OS", "BIE", "BR", "UO",
+        ]
         .iter()
         .any(|name| name.eq_ignore_ascii_case(prefix))
-        && rest.trim_start().bytes().all(|byte| byte.is_ascii_digit())
-    {
-        return true;
+            && rest.trim_start().bytes().all(|byte| byte.is_ascii_digit());
     }
-    let end = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
-    let (area, rest) = text.split_at(end);
-    if !STEP7_AREAS.iter().any(|name| name.eq_ignore_ascii_case(area)) {
-        return false;
-    }
-    let rest = rest.trim_start();
-    if let Some(indirect) = rest.strip_prefix('[') {
+    let number = number.trim_start();
+    if let Some(indirect) = number.strip_prefix('[') {
         return indirect.ends_with(']');
     }
     // `0.0`, `1.DBX 0.0`: at most one blank inside.
-    rest.starts_with(|c: char| c.is_ascii_digit())
-        && rest.bytes().filter(|byte| *byte == b' ').count() <= 1
-        && rest.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b' '))
-        && (!rest.contains(' ') || rest.contains(".D") || rest.contains(".d"))
+    number.starts_with(|c: char| c.is_ascii_digit())
+        && number.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b' '))
+        && match number.bytes().filter(|byte| *byte == b' ').count() {
+            0 => true,
+            1 => number.contains(".D") || number.contains(".d"),
+            _ => false,
+        }
 }
 
 /// Whether a line can only be STEP 5: a colon before the instruction, the end of a segment, fixed-point operators and
 /// constants of its kinds.
-fn is_step5(line: &str) -> bool {
+fn is_step5(line: &str, signs: Signs) -> bool {
     if line.starts_with("***") {
         return true;
     }
     // The address that a print puts before the colon.
-    let address = line.find(|it: char| !it.is_ascii_hexdigit()).unwrap_or(0);
-    let behind = line.get(address..).unwrap_or_default().trim_start();
-    let line = if address >= 4 && behind.starts_with(':') { behind } else { line };
-    let line = step5_code(line);
+    let address = line.bytes().take_while(u8::is_ascii_hexdigit).count();
+    let behind = || line.get(address..).unwrap_or_default().trim_start();
+    let line = if address >= 4 && address < line.len() && behind().starts_with(':') { behind() } else { line };
+    let line = if signs.has(Signs::SEMICOLON) { step5_code(line) } else { line };
     let heading = step5_heading(line).and_then(|it| it.block_kind());
     if heading.is_some_and(|it| matches!(it, BlockKind::Pb | BlockKind::Sb | BlockKind::Fx | BlockKind::Dx)) {
         return true;
@@ -728,27 +770,32 @@ fn is_step5(line: &str) -> bool {
         Some(code) if !code.starts_with('=') || code.starts_with("= ") => (true, code.trim_start()),
         _ => (false, line),
     };
-    let operator = ["!=F", "><F", "!=G", "><G", "!=D", "><D"].iter().any(|operator| code.starts_with(operator));
+    let operator =
+        matches!(code.as_bytes(), [b'!', b'=', b'F' | b'G' | b'D', ..] | [b'>', b'<', b'F' | b'G' | b'D', ..]);
     let constant = code.strip_prefix("L ").is_some_and(|operand| {
-        let (kind, _) = operand.trim_start().split_at_checked(2).unwrap_or_default();
-        ["KB", "KC", "KF", "KG", "KH", "KM", "KT", "KY", "KZ"].contains(&kind)
+        let kinds = [b'B', b'C', b'F', b'G', b'H', b'M', b'T', b'Y', b'Z'];
+        matches!(operand.trim_start().as_bytes(), [b'K', kind, ..] if kinds.contains(kind))
     });
-    operator || constant || colon && is_step7_instruction(code) || is_step5_instruction(strip_step7_label(code))
+    operator || constant || colon && is_step7_instruction(code, signs) || is_step5_instruction(strip_step7_label(code))
 }
 
 /// Whether an instruction is one that STEP 7 has not: `SPA PB 10`, `SPB= M1`, `A DB 5`, `KEW`, `NAME :INIT`.
 fn is_step5_instruction(code: &str) -> bool {
     let (mnemonic, rest) = word(code);
     let rest = rest.trim_start();
-    let (operand, after) = word(rest);
-    let letters = operand.trim_end_matches(|it: char| it.is_ascii_digit());
-    let numbered = letters.len() < operand.len() || after.trim_start().starts_with(|it: char| it.is_ascii_digit());
+    // The letters of an operand, and whether a number follows.
+    let operand = || {
+        let (operand, after) = word(rest);
+        let letters = operand.trim_end_matches(|it: char| it.is_ascii_digit());
+        let is_numbered = letters.len() < operand.len();
+        (letters, is_numbered || after.trim_start().starts_with(|it: char| it.is_ascii_digit()))
+    };
     match mnemonic {
         "SPA" | "SPB" | "JU" | "JC" | "BA" | "BAB" | "DOU" | "DOC" => {
-            numbered && ["OB", "PB", "SB", "FB", "FX"].contains(&letters) || rest.starts_with('=')
+            rest.starts_with('=') || matches!(operand(), ("OB" | "PB" | "SB" | "FB" | "FX", true))
         }
         "SPZ" | "SPN" | "SPP" | "SPM" | "SPO" | "JZ" | "JN" | "JP" | "JM" | "JO" => rest.starts_with('='),
-        "A" | "E" | "C" | "G" => numbered && letters == "DB" || letters == "DX",
+        "A" | "E" | "C" | "G" => matches!(operand(), ("DB", true) | ("DX", _)),
         "KEW" | "KZW" | "CFW" | "CSW" => rest.is_empty(),
         "NAME" | "BEZ" | "DECL" => rest.starts_with(':') && !rest.starts_with(":="),
         _ => false,
@@ -757,9 +804,6 @@ fn is_step5_instruction(code: &str) -> bool {
 
 /// Whether a line declares, initialises or passes a value: `tem : TIMER;`, `duree := S5T#1S`.
 fn is_declaration(line: &str) -> bool {
-    if memchr::memchr(b':', line.as_bytes()).is_none() {
-        return false;
-    }
     let name_end = line
         .find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ',' | '[' | ']' | ' ' | '\t')))
         .unwrap_or(line.len());
@@ -800,9 +844,12 @@ fn is_symbol_row(line: &str) -> bool {
 }
 
 /// Whether a line is natural language or markup of a document, rather than code.
-fn is_prose(line: &str) -> bool {
+fn is_prose(line: &str, signs: Signs) -> bool {
     if line.starts_with("```") {
         return true;
+    }
+    if !signs.has(Signs::SMALL) {
+        return false;
     }
     let (mut words, mut natural) = (0, 0);
     for word in line.split_whitespace().take(24) {

@@ -223,30 +223,33 @@ impl<'t> Instr<'t> {
 
     /// The tokens of the mnemonic: what stands before the first operand. Empty for a label alone on its line.
     pub fn mnemonic_tokens(self) -> impl Iterator<Item = SyntaxToken<'t>> + use<'t> {
-        self.0
-            .children_with_tokens()
-            .skip_while(|it| it.kind() == SyntaxKind::Label)
-            .map_while(SyntaxElement::into_token)
-            .filter(|it| !it.kind().is_trivia())
-            .take_while(|it| is_part_of_mnemonic(it.kind()))
+        let mut rest = self.0.children_with_tokens();
+        let after_label = std::iter::from_fn(move || {
+            loop {
+                match rest.next_node_or(|it| !it.is_trivia())? {
+                    SyntaxElement::Node(it) if it.kind() == SyntaxKind::Label => {}
+                    other => return other.into_token(),
+                }
+            }
+        });
+        after_label.take_while(|it| is_part_of_mnemonic(it.kind()))
     }
 
     /// `None` for a label alone on its line.
     pub fn extent(self) -> Option<Extent> {
         let mut range: Option<TextRange> = None;
         let (mut in_mnemonic, mut has_error) = (true, false);
-        for element in self.0.children_with_tokens() {
-            let kind = element.kind();
+        let mut rest = self.0.children_with_tokens();
+        while let Some(element) = rest.next_node_or(|it| in_mnemonic && !it.is_trivia()) {
             match element {
-                SyntaxElement::Token(it) if in_mnemonic && !kind.is_trivia() => {
-                    in_mnemonic = is_part_of_mnemonic(kind);
+                SyntaxElement::Token(it) => {
+                    in_mnemonic = is_part_of_mnemonic(it.kind());
                     if in_mnemonic {
                         let own = it.text_range();
                         range = Some(range.map_or(own, |before| before.cover(own)));
                     }
                 }
-                SyntaxElement::Token(_) => {}
-                SyntaxElement::Node(it) => match kind {
+                SyntaxElement::Node(it) => match it.kind() {
                     SyntaxKind::Operand | SyntaxKind::ArgList => {
                         in_mnemonic = false;
                         range = range.map(|before| before.cover(it.text_range()));
@@ -282,6 +285,11 @@ impl<'t> Instr<'t> {
     pub(in crate::syntax) fn op_in(self, words: &Words, mnemonics: Mnemonics) -> Option<Op> {
         let mut found = self.mnemonic_tokens();
         let first = found.next()?;
+        if first.kind() == SyntaxKind::Operator && first.text().contains([' ', '\t']) {
+            // `!= F`
+            let bare: String = first.text().split([' ', '\t']).collect();
+            return words.lookup(&bare, mnemonics);
+        }
         // Nearly always the mnemonic is one word.
         match found.next() {
             None => words.lookup(first.text(), mnemonics),

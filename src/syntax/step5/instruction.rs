@@ -3,11 +3,11 @@
 //! The source document shows the German set (GRF:222-1242); the rest of it, the English set and the substitution
 //! instructions for formal operands (`SVZ =`, `RB =`) come from the vendor's general documentation.
 
+use crate::syntax::Mnemonics;
 use crate::syntax::awl::ast::Instr;
 use crate::syntax::awl::instruction::{
     ArithOp, Conversion, JumpIf, LogicOp, NumberType, Op, Shift, TimerMode, Width, Words,
 };
-use crate::syntax::{Mnemonics, SyntaxKind};
 
 /// The mnemonic of `word` in one set, ignoring case. `(` of `U(` and `=` of `SPA=` belong to it.
 pub fn lookup(word: &str, mnemonics: Mnemonics) -> Option<Op> {
@@ -31,15 +31,7 @@ pub(super) fn only_in(word: &str) -> Option<Mnemonics> {
 
 /// What an instruction does; `None` for a label alone and for an unknown mnemonic.
 pub fn op(instr: Instr<'_>, mnemonics: Mnemonics) -> Option<Op> {
-    let first = instr.mnemonic_tokens().next()?;
-    match first.kind() {
-        // `!= F`
-        SyntaxKind::Operator if first.text().contains([' ', '\t']) => {
-            let bare: String = first.text().chars().filter(|it| !it.is_whitespace()).collect();
-            lookup(&bare, mnemonics)
-        }
-        _ => instr.op_in(&WORDS, mnemonics),
-    }
+    instr.op_in(&WORDS, mnemonics)
 }
 
 static WORDS: Words = Words::new(BOTH, GERMAN, ENGLISH);

@@ -34,13 +34,10 @@ pub(super) fn lex(text: &str) -> Tokens {
                 if line_start && labelled && is_name_line(word) {
                     lexer.push_to(Ident, end);
                     lexer.free_text();
-                } else if let Some(end) =
-                    operand_end(text, lexer.at, end, at_start).filter(|_| !(line_start && labelled))
-                {
-                    let kind = if constant_kind(word).is_some() { TypedConstant } else { Address };
-                    lexer.push_to(kind, end);
                 } else {
-                    lexer.push_to(Ident, end);
+                    let operand = || operand(text, lexer.at, end, at_start);
+                    let (kind, end) = (!line_start || !labelled).then(operand).flatten().unwrap_or((Ident, end));
+                    lexer.push_to(kind, end);
                 }
                 at_start = false;
             }
@@ -80,15 +77,24 @@ fn is_name_line(word: &str) -> bool {
     ["NAME", "NOM", "NOMBRE", "NOME"].iter().any(|it| it.eq_ignore_ascii_case(word))
 }
 
-/// Letters of the operands that have a number, in both mnemonic sets.
-const AREAS: [&str; 52] = [
-    "E", "EB", "EW", "ED", "I", "IB", "IW", "ID", "A", "AB", "AW", "AD", "Q", "QB", "QW", "QD", "M", "MB", "MW", "MD",
-    "F", "FY", "FW", "FD", "S", "SY", "SW", "SD", "D", "DL", "DR", "DW", "DD", "T", "Z", "C", "PB", "PY", "PW", "OY",
-    "OW", "BS", "OB", "SB", "FB", "FX", "DB", "DX", "RS", "RI", "RT", "BA",
-];
-
+/// Whether letters are those of operands that have a number, in either mnemonic set.
 pub(super) fn is_area(letters: &str) -> bool {
-    AREAS.iter().any(|it| it.eq_ignore_ascii_case(letters))
+    match *letters.as_bytes() {
+        [a] => {
+            matches!(a.to_ascii_uppercase(), b'E' | b'I' | b'A' | b'Q' | b'M' | b'F' | b'S' | b'D' | b'T' | b'Z' | b'C')
+        }
+        [a, b] => matches!(
+            [a.to_ascii_uppercase(), b.to_ascii_uppercase()],
+            [b'E' | b'I' | b'A' | b'Q' | b'M', b'B' | b'W' | b'D']
+                | [b'F' | b'S', b'B' | b'Y' | b'W' | b'D']
+                | [b'D', b'B' | b'L' | b'R' | b'W' | b'D']
+                | [b'F' | b'D', b'X']
+                | [b'P' | b'O', b'B' | b'Y' | b'W']
+                | [b'R', b'S' | b'I' | b'T']
+                | [b'B', b'S' | b'A']
+        ),
+        _ => false,
+    }
 }
 
 /// Whether a word begins a constant: `KF`, `KH0000`.
@@ -98,7 +104,9 @@ pub(crate) fn is_constant(word: &str) -> bool {
 
 /// Letters of the blocks.
 pub(super) fn is_block(letters: &str) -> bool {
-    ["OB", "PB", "SB", "FB", "FX", "DB", "DX"].iter().any(|it| it.eq_ignore_ascii_case(letters))
+    let [a, b] = *letters.as_bytes() else { return false };
+    let upper = [a.to_ascii_uppercase(), b.to_ascii_uppercase()];
+    matches!(upper, [b'O' | b'P' | b'S' | b'F' | b'D', b'B'] | [b'F' | b'D', b'X'])
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,34 +123,34 @@ enum Constant {
     Text,
 }
 
-/// The kind of constant that a word such as `KF`, or `KH0000`, begins.
-fn constant_kind(word: &str) -> Option<(Constant, usize)> {
-    let head = word.get(..2)?.to_ascii_uppercase();
-    let kind = match head.as_str() {
-        "KF" | "KG" | "BF" => Constant::Signed,
-        "DF" if word.len() == 2 => Constant::Signed,
-        "KH" => Constant::Word,
-        "DH" if word.len() == 2 => Constant::Word,
-        "KT" | "KY" | "KZ" | "KB" => Constant::Digits,
-        "KM" => Constant::Bits,
-        "KC" | "KS" if word.len() == 2 => Constant::Text,
+/// The kind of constant that a word such as `KF`, or `KH0000`, begins with its first two letters.
+fn constant_kind(word: &str) -> Option<Constant> {
+    let &[a, b, ref rest @ ..] = word.as_bytes() else { return None };
+    let kind = match &[a.to_ascii_uppercase(), b.to_ascii_uppercase()] {
+        b"KF" | b"KG" | b"BF" => Constant::Signed,
+        b"DF" if rest.is_empty() => Constant::Signed,
+        b"KH" => Constant::Word,
+        b"DH" if rest.is_empty() => Constant::Word,
+        b"KT" | b"KY" | b"KZ" | b"KB" => Constant::Digits,
+        b"KM" => Constant::Bits,
+        b"KC" | b"KS" if rest.is_empty() => Constant::Text,
         _ => return None,
     };
     // `KTRL` is a name.
-    let rest = &word[2..];
-    let fits = |it: char| it.is_ascii_digit() || it == '?' || kind == Constant::Word && it.is_ascii_hexdigit();
-    rest.chars().all(fits).then_some((kind, 2))
+    let fits = |it: &u8| it.is_ascii_digit() || *it == b'?' || kind == Constant::Word && it.is_ascii_hexdigit();
+    rest.iter().all(fits).then_some(kind)
 }
 
-/// Where an operand ends that the word from `start` to `end` begins: the letters of an area and a number, or a constant.
-/// At the start of an instruction a word is a mnemonic, unless what follows it at once says otherwise (`E0.0`).
-fn operand_end(text: &str, start: usize, end: usize, at_start: bool) -> Option<usize> {
+/// The operand, and where it ends, that the word from `start` to `end` begins: the letters of an area and a number, or a
+/// constant. At the start of an instruction a word is a mnemonic, unless what follows it at once says otherwise (`E0.0`).
+fn operand(text: &str, start: usize, end: usize, at_start: bool) -> Option<(SyntaxKind, usize)> {
     let word = &text[start..end];
     let bytes = text.as_bytes();
     let blanks = |from: usize| from + bytes[from..].iter().take_while(|it| matches!(it, b' ' | b'\t')).count();
     let run = |from: usize, fits: fn(&u8) -> bool| from + bytes[from..].iter().take_while(|it| fits(it)).count();
-    if let Some((kind, letters)) = constant_kind(word).filter(|_| !at_start) {
-        let from = blanks(start + letters);
+    let constant = if at_start { None } else { constant_kind(word) };
+    if let Some(kind) = constant {
+        let from = blanks(start + 2);
         let stop = match kind {
             Constant::Signed => run(from, |it| it.is_ascii_digit() || matches!(it, b'+' | b'-' | b'?')),
             Constant::Word => run(from, |it| it.is_ascii_alphanumeric() || *it == b'?'),
@@ -154,10 +162,10 @@ fn operand_end(text: &str, start: usize, end: usize, at_start: bool) -> Option<u
             }
             Constant::Text => run(from, |it| it.is_ascii_graphic() && *it != b';').min(from + 4),
         };
-        return (stop > from).then_some(stop);
+        return (stop > from).then_some((TypedConstant, stop));
     }
     let letters = word.bytes().take_while(u8::is_ascii_alphabetic).count();
-    if !is_area(&word[..letters]) {
+    if at_start && letters == word.len() || !is_area(&word[..letters]) {
         return None;
     }
     let digits = if letters == word.len() { blanks(end) } else { start + letters };
@@ -171,12 +179,10 @@ fn operand_end(text: &str, start: usize, end: usize, at_start: bool) -> Option<u
         _ => number,
     };
     let has_bit = bit > number + 1;
-    if at_start && !(has_bit && letters < word.len())
-        || letters < word.len() && word.starts_with(['S', 's']) && !has_bit
-    {
+    if !has_bit && (at_start || letters < word.len() && word.starts_with(['S', 's'])) {
         return None;
     }
-    Some(if has_bit { bit } else { number })
+    Some((Address, if has_bit { bit } else { number }))
 }
 
 /// Digits with a fraction; at the start of a line, those of an address, which is hexadecimal.
@@ -219,8 +225,14 @@ impl<'t> Lexer<'t> {
     }
 
     /// Where a run of characters ends that starts at an offset.
-    fn run(&self, from: usize, fits: fn(char) -> bool) -> usize {
-        self.text[from..].find(|it| !fits(it)).map_or(self.text.len(), |it| from + it)
+    fn run(&self, from: usize, fits: impl Fn(char) -> bool) -> usize {
+        let is_part = |it: &&u8| it.is_ascii() && fits(char::from(**it));
+        let end = from + self.text.as_bytes()[from..].iter().take_while(is_part).count();
+        // Nearly all characters are of ASCII.
+        match self.byte(end) {
+            Some(it) if !it.is_ascii() => self.text[end..].find(|it| !fits(it)).map_or(self.text.len(), |it| end + it),
+            _ => end,
+        }
     }
 
     fn push_to(&mut self, kind: SyntaxKind, end: usize) {

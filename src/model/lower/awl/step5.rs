@@ -16,7 +16,7 @@ use crate::model::object::{self, AddressError, Area, Class, Footprint, Object, T
 use crate::model::unit::{OddityKind, Section, StatementKind};
 use crate::syntax::awl::ast;
 use crate::syntax::awl::instruction::Op;
-use crate::syntax::{AstNode as _, Language, Mnemonics, SyntaxKind, SyntaxNode};
+use crate::syntax::{AstNode as _, Language, Mnemonics, SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// Whether the first mnemonic is in capitals.
 pub(super) fn writes_capitals(root: SyntaxNode<'_>) -> bool {
@@ -76,14 +76,16 @@ impl Machine {
         if let Some(name) = text.strip_prefix('-').filter(|it| it.starts_with(char::is_alphabetic)) {
             return Operand::Object(self.b.object(Object { text: text.clone(), ..Object::symbol(name) }));
         }
-        let kinds: Vec<SyntaxKind> = node.tokens().map(|it| it.kind()).collect();
-        let is_number = kinds.iter().all(|it| matches!(it, SyntaxKind::Number | SyntaxKind::Plus | SyntaxKind::Minus));
-        let is_constant = node
-            .first_token()
+        let first = node.first_token();
+        let is_digit =
+            |it: SyntaxToken<'_>| matches!(it.kind(), SyntaxKind::Number | SyntaxKind::Plus | SyntaxKind::Minus);
+        let is_number = first.is_none_or(is_digit) && node.tokens().all(is_digit);
+        let is_constant = first
             .is_some_and(|it| it.kind() == SyntaxKind::TypedConstant || crate::syntax::step5::is_constant(it.text()));
         if is_number || is_constant {
             // With the blanks, which part letters from characters.
-            let written: SmolStr = if kinds.len() == 1 { node.text().trim().into() } else { text.clone() };
+            let is_one = node.tokens().nth(1).is_none();
+            let written: SmolStr = if is_one { node.text().trim().into() } else { text.clone() };
             return self.constant(&written, range);
         }
         if self.modified {
