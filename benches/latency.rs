@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench latency`. A client in this process speaks to the server as an editor does. The folder holds 200
 //! files of one program, 100,000 lines in all; one of them has 5,000 lines and is typed in: 500 times, at random places,
-//! every other time the character that was typed is taken back.
+//! every other time the character that was typed is taken back; at once, and with pauses as a person makes them.
 
 #[expect(dead_code, unused_imports, reason = "the other bench uses the rest of it")]
 mod generator;
@@ -22,6 +22,9 @@ const FILES: usize = 200;
 const LINES: usize = 100_000;
 const LINES_TYPED_IN: usize = 5_000;
 const EDITS: usize = 500;
+
+/// Between two characters: a key that is held down comes again as soon.
+const PAUSE: Duration = Duration::from_millis(30);
 
 /// A program in files, the first of them that which is typed in. `starts` tells the lines with which a file may begin.
 fn files(text: &str, starts: impl Fn(&str) -> bool) -> Vec<String> {
@@ -51,6 +54,8 @@ fn program(make: fn(usize, u64) -> String) -> String {
 struct Client {
     connection: Connection,
     next: i32,
+    /// Of the document that is open.
+    version: i32,
     /// When the first findings came.
     first_findings: Option<Instant>,
 }
@@ -96,7 +101,7 @@ impl Client {
 fn open(folder: &Path, capabilities: &Value) -> (Client, std::thread::JoinHandle<plclint::server::Ended>) {
     let (server, connection) = Connection::memory();
     let server = std::thread::spawn(move || run(server));
-    let mut client = Client { connection, next: 0, first_findings: None };
+    let mut client = Client { connection, next: 0, version: 1, first_findings: None };
     let uri = lsp_types::Uri::from_file_path(folder).expect("an absolute path");
     let folders = json!([{ "uri": uri, "name": "bench" }]);
     client.ask(
@@ -175,11 +180,29 @@ fn measure(name: &str, root: &Path, typed_in: &str, files: &[String]) {
     let found = report["items"].as_array().map_or(0, Vec::len);
     println!("  opened, to the {found} findings of the file: {:.0} ms", milliseconds(start.elapsed()));
 
+    for (pause, name) in [(Duration::ZERO, "one after the other"), (PAUSE, "30 ms after one another")] {
+        let mut took = type_in(&mut client, &uri, &files[0], pause);
+        took.sort_unstable();
+        let at = |hundredth: usize| milliseconds(took[(took.len() * hundredth / 100).min(took.len() - 1)]);
+        println!(
+            "  typed, {name}, to findings: p50 {:.1} ms, p90 {:.1} ms, p99 {:.1} ms, worst {:.1} ms",
+            at(50),
+            at(90),
+            at(99),
+            at(100)
+        );
+    }
+    close(client, server);
+}
+
+/// Types a character at a random place, takes it back, and so on. How long the findings take after each.
+fn type_in(client: &mut Client, uri: &str, text: &str, pause: Duration) -> Vec<Duration> {
     let mut random = Random::new(11);
-    let text: Vec<&str> = files[0].lines().collect();
+    let text: Vec<&str> = text.lines().collect();
+    let pull = json!({ "textDocument": { "uri": uri } });
     let mut took = Vec::new();
     let mut typed = None;
-    for version in 2..EDITS + 2 {
+    for _ in 0..EDITS {
         let (line, from, to, inserted) = match typed.take() {
             Some((line, column)) => (line, column, column + 1, ""),
             None => {
@@ -189,24 +212,17 @@ fn measure(name: &str, root: &Path, typed_in: &str, files: &[String]) {
                 (line, column, column, random.pick(&["1", "0", "M", "E", " ", ";", "(", "=", ".", "N", "A"]))
             }
         };
+        client.version += 1;
         let range = json!({ "start": { "line": line, "character": from }, "end": { "line": line, "character": to } });
         let change = json!({
-            "textDocument": { "uri": uri, "version": version },
+            "textDocument": { "uri": uri, "version": client.version },
             "contentChanges": [{ "range": range, "text": inserted }],
         });
         let start = Instant::now();
         client.notify("textDocument/didChange", change);
         client.ask("textDocument/diagnostic", pull.clone());
         took.push(start.elapsed());
+        std::thread::sleep(pause);
     }
-    took.sort_unstable();
-    let at = |hundredth: usize| milliseconds(took[(took.len() * hundredth / 100).min(took.len() - 1)]);
-    println!(
-        "  typed, to findings: p50 {:.1} ms, p90 {:.1} ms, p99 {:.1} ms, worst {:.1} ms",
-        at(50),
-        at(90),
-        at(99),
-        at(100)
-    );
-    close(client, server);
+    took
 }

@@ -4,8 +4,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::thread;
+use std::time::Duration;
 
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::{
@@ -42,6 +43,10 @@ pub enum Ended {
     /// The client went away, or left without having asked to.
     Abruptly,
 }
+
+/// A client that asks for findings does so as soon as something was typed. What it does not ask for waits so long, to be out
+/// of the way.
+const PAUSE: Duration = Duration::from_millis(10);
 
 enum Event {
     Message(Message),
@@ -168,21 +173,44 @@ impl Server {
     fn run(mut self, queue: &Receiver<Event>) -> Ended {
         loop {
             let event = match queue.try_recv() {
-                Ok(event) => event,
                 // Findings are asked for when all that was typed meanwhile is in.
-                Err(TryRecvError::Empty) => {
-                    self.flush();
-                    match queue.recv() {
-                        Ok(event) => event,
-                        Err(_) => return Ended::Abruptly,
-                    }
-                }
-                Err(TryRecvError::Disconnected) => return Ended::Abruptly,
+                Err(TryRecvError::Empty) => match self.wait() {
+                    Some(pause) => queue.recv_timeout(pause),
+                    None => queue.recv().map_err(|_| RecvTimeoutError::Disconnected),
+                },
+                Err(TryRecvError::Disconnected) => Err(RecvTimeoutError::Disconnected),
+                Ok(event) => Ok(event),
             };
-            if let Some(ended) = self.event(event) {
+            let ended = match event {
+                Ok(event) => self.event(event),
+                Err(RecvTimeoutError::Timeout) => {
+                    self.flush();
+                    None
+                }
+                Err(RecvTimeoutError::Disconnected) => Some(Ended::Abruptly),
+            };
+            if let Some(ended) = ended {
                 return ended;
             }
         }
+    }
+
+    /// Before the server waits for messages: asks for findings, or says how long it waits before it does.
+    fn wait(&mut self) -> Option<Duration> {
+        let is_loading = self.roots.iter().any(|it| it.loading.is_some());
+        if !is_loading {
+            std::mem::take(&mut self.deferred).into_iter().for_each(|it| self.dispatch(it));
+        }
+        if self.stage != Stage::Running || is_loading || self.flushed == self.revision {
+            return None;
+        }
+        if !self.abilities.pulls || !self.cold.is_empty() {
+            self.flush();
+            return None;
+        }
+        // Its answer comes as a message.
+        let is_asked = self.pending.len() > self.suspended.len();
+        (!is_asked).then_some(PAUSE)
     }
 
     fn number(&mut self) -> u32 {
@@ -687,13 +715,6 @@ impl Server {
 
     /// All messages are in: asks for the findings of what they made.
     fn flush(&mut self) {
-        if self.stage != Stage::Running || self.roots.iter().any(|it| it.loading.is_some()) {
-            return;
-        }
-        std::mem::take(&mut self.deferred).into_iter().for_each(|it| self.dispatch(it));
-        if self.flushed == self.revision {
-            return;
-        }
         self.flushed = self.revision;
         self.forget_vanished();
         std::mem::take(&mut self.suspended).into_iter().for_each(|it| self.dispatch(it));
