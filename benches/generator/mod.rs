@@ -264,7 +264,10 @@ fn st_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
     let word = section.word(random);
     let source = section.source(random);
     match random.below(6) {
-        0 => writeln!(text, "  %MW{word} := %MW{source} * 10 + %KW{};", random.below(100)).expect("a string"),
+        0 => {
+            writeln!(text, "  %MW{word} := %MW{word} / 2 + %MW{source} * 10 + %KW{};", random.below(100))
+                .expect("a string");
+        }
         1 => {
             let (set, reset) = match section.bit() {
                 Some(bit) => (format!("    SET %M{bit};\n"), format!("    RESET %M{bit};\n")),
@@ -275,10 +278,11 @@ fn st_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
             writeln!(text, "    %MW{word} := 0;\n{reset}  END_IF;").expect("a string");
         }
         2 => {
-            writeln!(text, "  FOR %MW{word} := 0 TO {} DO", random.below(7)).expect("a string");
+            let index = section.first + 47;
+            writeln!(text, "  FOR %MW{index} := 0 TO {} DO", random.below(7)).expect("a string");
             writeln!(
                 text,
-                "    %MW{}[%MW{word}] := %KW{}[%MW{word}];\n  END_FOR;",
+                "    %MW{}[%MW{index}] := %KW{}[%MW{index}];\n  END_FOR;",
                 section.table(random),
                 random.below(50)
             )
@@ -288,7 +292,11 @@ fn st_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
             writeln!(text, "  %MF{} := SQRT(%MF{}) / 2.5;", section.float(random), section.float(random))
                 .expect("a string");
         }
-        4 => writeln!(text, "  %MW{}:8 := %MW{}:8;", section.first + 30, section.first + 38).expect("a string"),
+        4 => {
+            let (from, to) = (section.first + 38, section.first + 30);
+            writeln!(text, "  %MW{to}:8 := %MW{from}:8;\n  %MW{word} := %MW{word} + SUM(%MW{to}:8);")
+                .expect("a string");
+        }
         _ => {
             writeln!(text, "  IF RE {input} AND (%MW{source} >= {}) THEN INC %MW{word}; END_IF;", random.below(500))
                 .expect("a string");
@@ -325,7 +333,7 @@ fn il_sentence(text: &mut String, random: &mut Random, section: &mut Section) {
         }
         _ => {
             let (word, source) = (section.word(random), section.source(random));
-            writeln!(text, "      LD      TRUE\n      [%MW{word}:=%MW{source}+{}]", random.below(50))
+            writeln!(text, "      LD      TRUE\n      [%MW{word}:=%MW{word}+%MW{source}+{}]", random.below(50))
                 .expect("a string");
         }
     }
