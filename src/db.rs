@@ -5,8 +5,8 @@
 //! equality, so that an edit which changes no fact stops there.
 
 mod memory;
+mod names;
 
-use std::borrow::Cow;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -22,10 +22,9 @@ use smol_str::SmolStr;
 
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
-use crate::analysis::fields::{Declaration, Declarations};
 use crate::analysis::program::{ProgramIndex, Skeleton};
 use crate::analysis::repeats::Forms;
-use crate::analysis::symbols::{self, SymbolTable};
+use crate::analysis::symbols::SymbolTable;
 use crate::draw::{self, Drawing, Mark};
 use crate::lint::settings::{ProgramScope, Settings};
 use crate::lint::suppress::{Code, Comment, Suppressions};
@@ -38,6 +37,7 @@ use crate::model::symbols::RemarkKind;
 use crate::model::{UnitModel, lower};
 use crate::source::decode::{Encoding, SourceText};
 use crate::source::detect::{self, Detected, Dialect, FileHint};
+use crate::source::edit::difference;
 use crate::source::entity_from_address;
 use crate::source::line_index::LineIndex;
 use crate::source::split::{self, SplitHint, UnitSpan};
@@ -45,6 +45,8 @@ use crate::source::stx;
 use crate::syntax::{self, Language, Parse, SyntaxKind, WalkEvent};
 use crate::target::Target;
 use memory::Memory;
+pub use names::Facts;
+use names::Resolved;
 
 /// A file as it was read.
 #[salsa::input(debug)]
@@ -64,11 +66,13 @@ pub struct Content {
     text: Arc<str>,
     /// The units of the text, where an edit tells them from those before it.
     spans: Option<(SplitHint, Arc<[UnitSpan]>)>,
+    /// Where its lines start, likewise.
+    lines: Option<Arc<LineIndex>>,
 }
 
 impl From<Arc<str>> for Content {
     fn from(text: Arc<str>) -> Self {
-        Self { text, spans: None }
+        Self { text, spans: None, lines: None }
     }
 }
 
@@ -196,9 +200,10 @@ pub fn model<'db>(db: &'db dyn Db, unit: Unit<'db>) -> Arc<UnitModel> {
 }
 
 /// Where the lines of a file start.
-#[salsa::tracked(no_eq, lru = 256)]
-pub fn lines(db: &dyn Db, file: SourceFile) -> LineIndex {
-    LineIndex::new(file.text(db))
+#[salsa::tracked(returns(deref), no_eq, lru = 256)]
+pub fn lines(db: &dyn Db, file: SourceFile) -> Arc<LineIndex> {
+    let content = file.content(db);
+    content.lines.clone().unwrap_or_else(|| Arc::new(LineIndex::new(&content.text)))
 }
 
 /// What outlives the tree and the model of a unit.
@@ -497,12 +502,12 @@ fn declaring<'db>(db: &'db dyn Db, program: Program<'db>) -> Declaring<'db> {
 
 /// What symbols name. It has no places.
 #[salsa::tracked]
-fn symbols_of<'db>(db: &'db dyn Db, declaring: Declaring<'db>) -> SymbolTable {
-    SymbolTable::new(declaring.family(db), declaring.units(db).iter().map(|&unit| &**facts(db, unit)))
+fn symbols_of<'db>(db: &'db dyn Db, declaring: Declaring<'db>) -> Arc<SymbolTable> {
+    Arc::new(SymbolTable::new(declaring.family(db), declaring.units(db).iter().map(|&unit| &**facts(db, unit))))
 }
 
 /// What the symbols of a program name.
-pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> &'db SymbolTable {
+pub fn symbol_table<'db>(db: &'db dyn Db, program: Program<'db>) -> &'db Arc<SymbolTable> {
     symbols_of(db, *declaring(db, program))
 }
 
@@ -542,46 +547,25 @@ fn run_program_rules(cx: &ProgramCx<'_>, are_wanted: impl Fn(&Check) -> bool) ->
     Ran { findings: findings.into_iter().map(Arc::new).collect(), failed }
 }
 
-/// The facts of a unit of a program, symbols resolved.
-#[salsa::tracked]
-fn named_facts<'db>(db: &'db dyn Db, program: Program<'db>, unit: Unit<'db>) -> Arc<UnitFacts> {
-    let facts = facts(db, unit);
-    match symbols::resolve(symbol_table(db, program), facts) {
-        Cow::Borrowed(_) => facts.clone(),
-        Cow::Owned(resolved) => Arc::new(resolved),
-    }
+/// What the units of a file tell the program of a family.
+#[salsa::tracked(returns(deref), no_eq)]
+fn file_facts(db: &dyn Db, file: SourceFile, family: Family) -> Box<[Arc<UnitFacts>]> {
+    let of_family = units(db, file).iter().filter(|&&it| unit_family(db, it) == Some(family));
+    of_family.map(|&it| facts(db, it).clone()).collect()
 }
 
-/// Firewall: of the facts of a unit, what the fields of other units hang on.
-#[salsa::tracked]
-fn declaration<'db>(db: &'db dyn Db, program: Program<'db>, unit: Unit<'db>) -> Declaration {
-    Declaration::new(named_facts(db, program, unit))
+#[salsa::tracked(no_eq)]
+fn resolved<'db>(db: &'db dyn Db, program: Program<'db>) -> Arc<Resolved> {
+    let family = program.family(db);
+    let files = program.files(db).iter().chain(program.variables(db));
+    let told: Vec<Arc<UnitFacts>> = files.flat_map(|&it| file_facts(db, it, family)).cloned().collect();
+    let key = (program.key(db).clone(), family);
+    db.memory().resolve(key, told.into(), symbol_table(db, program).clone())
 }
 
-#[salsa::tracked]
-fn declarations<'db>(db: &'db dyn Db, program: Program<'db>) -> Declarations {
-    Declarations::new(program_units(db, program).iter().map(|&unit| declaration(db, program, unit)))
-}
-
-/// The facts of a unit of STEP 7, symbols and fields resolved.
-#[salsa::tracked]
-fn placed_facts<'db>(db: &'db dyn Db, program: Program<'db>, unit: Unit<'db>) -> Arc<UnitFacts> {
-    let facts = named_facts(db, program, unit);
-    match declarations(db, program).resolve(Cow::Borrowed(facts)) {
-        Cow::Borrowed(_) => facts.clone(),
-        Cow::Owned(resolved) => Arc::new(resolved),
-    }
-}
-
-/// The facts of a program's units, symbols resolved.
-pub fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Vec<Arc<UnitFacts>> {
-    let (is_step7, has_symbols) = (program.family(db) == Family::Step7, !symbol_table(db, program).is_empty());
-    let of_unit = |unit| match (is_step7, has_symbols) {
-        (true, _) => placed_facts(db, program, unit),
-        (false, true) => named_facts(db, program, unit),
-        (false, false) => facts(db, unit),
-    };
-    program_units(db, program).iter().map(|&unit| of_unit(unit).clone()).collect()
+/// The facts of a program's units, symbols and fields resolved, in the order of [`program_units`].
+pub fn program_facts<'db>(db: &'db dyn Db, program: Program<'db>) -> Facts {
+    resolved(db, program).facts().clone()
 }
 
 /// The skeleton of a program, of its [`program_facts`].
@@ -591,8 +575,8 @@ fn skeleton<'a>(db: &dyn Db, program: Program<'_>, facts: &'a [Arc<UnitFacts>]) 
     if program.files(db).iter().any(|it| partly_read.iter().any(|folder| folder == folder_of(it.path(db)))) {
         skeleton.leave_incomplete();
     }
-    if program.family(db) == Family::Step7 {
-        skeleton.know_layouts(declarations(db, program).layouts().clone());
+    if let Some(declarations) = resolved(db, program).declarations() {
+        skeleton.know_layouts(declarations.layouts().clone());
     }
     skeleton
 }
@@ -709,7 +693,7 @@ pub fn file_findings(db: &dyn Db, file: SourceFile) -> Box<[FileFinding]> {
         None => false,
     });
     let mut suppressions = suppressions(db, file);
-    let lines = if suppressions.is_empty() { None } else { Some(LineIndex::new(file.text(db))) };
+    let lines = if suppressions.is_empty() { None } else { Some(lines(db, file)) };
     let mut findings: Vec<FileFinding> = found
         .into_iter()
         .map(|finding| {
@@ -772,30 +756,48 @@ pub struct Places<'db> {
     units: &'db [Unit<'db>],
     /// Offsets of the units, as far as their files were asked for.
     offsets: FxHashMap<Unit<'db>, u32>,
+    /// By the index of their unit.
+    placed: FxHashMap<u32, Placed<'db>>,
+}
+
+/// Where the anchors of a unit lie.
+#[derive(Clone, Copy)]
+struct Placed<'db> {
+    file: SourceFile,
+    offset: TextSize,
+    anchors: &'db [TextRange],
 }
 
 impl<'db> Places<'db> {
     pub fn new(db: &'db dyn Db, program: Program<'db>) -> Self {
-        Self { db, units: program_units(db, program), offsets: FxHashMap::default() }
+        let units = program_units(db, program);
+        Self { db, units, offsets: FxHashMap::default(), placed: FxHashMap::default() }
     }
 
     pub fn of(&mut self, site: Site) -> Option<FilePlace> {
-        let project = self.db.project();
         if site.is_configured() {
-            return Some(FilePlace {
-                file: project.configuration(self.db),
-                range: project.settings(self.db).place(site)?,
-            });
+            let project = self.db.project();
+            let range = project.settings(self.db).place(site)?;
+            return Some(FilePlace { file: project.configuration(self.db), range });
         }
-        let unit = *self.units.get(site.unit as usize)?;
+        let Placed { file, offset, anchors } = self.unit(site.unit)?;
+        let range = anchors.get(site.anchor as usize).or(anchors.first()).copied().unwrap_or_default();
+        Some(FilePlace { file, range: range.checked_add(offset)? })
+    }
+
+    fn unit(&mut self, index: u32) -> Option<Placed<'db>> {
+        if let Some(known) = self.placed.get(&index) {
+            return Some(*known);
+        }
+        let unit = *self.units.get(index as usize)?;
         let file = unit.file(self.db);
         if !self.offsets.contains_key(&unit) {
             self.offsets.extend(layout(self.db, file).iter().copied());
         }
-        let offset = *self.offsets.get(&unit)?;
-        let anchors = &analysis(self.db, unit).anchors;
-        let range = anchors.get(site.anchor as usize).or(anchors.first()).copied().unwrap_or_default();
-        Some(FilePlace { file, range: range.checked_add(TextSize::new(offset))? })
+        let offset = TextSize::new(*self.offsets.get(&unit)?);
+        let placed = Placed { file, offset, anchors: &analysis(self.db, unit).anchors };
+        self.placed.insert(index, placed);
+        Some(placed)
     }
 }
 
@@ -828,7 +830,7 @@ fn suppressions(db: &dyn Db, file: SourceFile) -> Suppressions {
     if memchr::memmem::find(text.as_bytes(), b"plclint:").is_none() {
         return Suppressions::new([], Code::default());
     }
-    let lines = LineIndex::new(text);
+    let lines = lines(db, file);
     let line = |at: TextSize| lines.line_col(at).line;
     let mut comments = Vec::new();
     let mut code = Code::default();
@@ -984,7 +986,10 @@ impl RootDatabase {
         let (old, hint) = (file.text(self), split_hint(self, file));
         let known = split::resplit(old, spans(self, file), &text, file.detected(self), &hint);
         let spans = known.map(|it| (hint, it.into()));
-        file.set_content(self).to(Content { text, spans });
+        let (start, end) = difference(old, &text);
+        let mut index = lines(self, file).clone();
+        index.edit(start..end, text.len() + end - start - old.len(), &text);
+        file.set_content(self).to(Content { text, spans, lines: Some(Arc::new(index)) });
     }
 
     /// Does what the next edit would have to do first, once findings are told.

@@ -168,7 +168,7 @@ fn sees_after(program: &ProgramIndex<'_>, net: &Net<'_, '_>, entry: u32) -> Opti
         let facts = program.units[*it as usize];
         facts.chart.is_some() && chart::section(&facts.entity) == Some((of.task, of.section))
     };
-    let contexts = |unit: u32| program.contexts.get(unit as usize).map(Vec::as_slice);
+    let contexts = |unit: u32| program.contexts.get(unit as usize).map(|it| &it[..]);
     let charts: Vec<u32> = (0..).take(program.units.len()).filter(is_chart).collect();
     let own: &[Context] = contexts(entry).filter(|it| it.len() == 1)?;
     if charts.iter().any(|it| contexts(*it) != Some(own)) {
@@ -272,7 +272,7 @@ impl<'w, 'p, 'a> Pair<'w, 'p, 'a> {
         // The bit of which only an edge is asked for is read nowhere.
         let (nodes, reads): (Vec<Node>, Vec<ExprId>) =
             reads.filter_map(|it| Some((it.0, self.exprs.find_read(it.1, 0)?))).unzip();
-        let active: Vec<&[Node]> = self.active.iter().map(Vec::as_slice).collect();
+        let active: Vec<&[Node]> = self.active.iter().map(|it| &it[..]).collect();
         let active: Vec<&[Node]> = active.into_iter().filter(|it| !it.is_empty() && it.iter().all(is_of)).collect();
         if nodes.is_empty() && active.is_empty() {
             return false;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHashSet};
+use smallvec::SmallVec;
 use smol_str::SmolStr;
 
 use super::Site;
@@ -270,9 +271,9 @@ pub struct Skeleton<'a> {
     /// Of each unit, its first call; then the end.
     first_calls: Vec<u32>,
     /// Calls into each unit, as indices into `calls`.
-    pub callers: Vec<Vec<u32>>,
+    pub callers: Vec<SmallVec<[u32; 4]>>,
     /// Contexts that run each unit, sorted.
-    pub contexts: Vec<Vec<Context>>,
+    pub contexts: Vec<SmallVec<[Context; 2]>>,
     /// Whether the system runs each unit, or code that it runs calls it. The contexts of other units are a guess.
     pub reached: Vec<bool>,
     /// Whether a unit surely runs in each scan of some task: its entry point, and what it calls without a condition.
@@ -519,7 +520,7 @@ impl<'a> Skeleton<'a> {
         let names = unit_names(&units);
         let mut calls = Vec::new();
         let mut first_calls = Vec::with_capacity(units.len() + 1);
-        let mut callers = vec![Vec::new(); units.len()];
+        let mut callers = vec![SmallVec::new(); units.len()];
         for (unit, facts) in units.iter().enumerate() {
             first_calls.push(as_index(calls.len()));
             for (index, it) in facts.calls.iter().enumerate() {
@@ -790,7 +791,7 @@ impl<'a> Skeleton<'a> {
 
     /// Whether only start-up blocks run the unit: once, before the first scan.
     pub fn is_startup(&self, unit: u32) -> bool {
-        self.contexts[unit as usize] == [Context::Startup]
+        self.contexts[unit as usize][..] == [Context::Startup]
     }
 
     /// Whether the unit runs in events alone, each of which something raises.
@@ -932,8 +933,8 @@ fn own_context(facts: &UnitFacts) -> Option<Context> {
 }
 
 /// Contexts of each unit, and whether they are known.
-fn contexts(units: &[&UnitFacts], callees: Callees<'_, '_>) -> (Vec<Vec<Context>>, Vec<bool>) {
-    let mut contexts: Vec<Vec<Context>> = vec![Vec::new(); units.len()];
+fn contexts(units: &[&UnitFacts], callees: Callees<'_, '_>) -> (Vec<SmallVec<[Context; 2]>>, Vec<bool>) {
+    let mut contexts: Vec<SmallVec<[Context; 2]>> = vec![SmallVec::new(); units.len()];
     for (unit, facts) in units.iter().enumerate() {
         let Some(context) = own_context(facts).filter(|_| is_entry(&facts.entity)) else { continue };
         let mut stack = vec![as_index(unit)];
@@ -983,8 +984,9 @@ fn order(family: Family, units: &[&UnitFacts], callees: Callees<'_, '_>) -> Vec<
         Family::Pl7 => order_sections(units, &mut entries),
         Family::Step5 | Family::Step7 => {}
     }
+    let mut stack = Vec::new();
     for root in entries.into_iter().chain(0..units.len()) {
-        let mut stack = vec![as_index(root)];
+        stack.push(as_index(root));
         while let Some(at) = stack.pop() {
             if order[at as usize] != u32::MAX {
                 continue;

@@ -8,11 +8,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Ran;
+use super::names::{Facts, Resolved};
 use crate::analysis::Site;
 use crate::analysis::facts::UnitFacts;
 use crate::analysis::islands::Islands;
 use crate::analysis::outline::{Moved, Numbers, Outline};
 use crate::analysis::program::{ProgramIndex, Skeleton};
+use crate::analysis::symbols::SymbolTable;
 use crate::analysis::unseen::{AskedFor, Questions, Summary};
 use crate::lint::Finding;
 use crate::model::entity::Family;
@@ -23,6 +25,7 @@ type Key = (String, Family);
 #[derive(Debug, Default)]
 pub struct Memory {
     states: Mutex<FxHashMap<Key, Vec<State>>>,
+    resolved: Mutex<FxHashMap<Key, Arc<Resolved>>>,
 }
 
 /// Of each program, so many states are kept: one with the mistake that is being typed, one without, and some besides, for
@@ -39,7 +42,7 @@ fn keeps(family: Family) -> bool {
 #[derive(Debug, Clone)]
 struct State {
     target: Target,
-    facts: Vec<Arc<UnitFacts>>,
+    facts: Facts,
     outline: Outline,
     summary: Summary,
     ran: Ran<Arc<Finding<Site>>>,
@@ -90,7 +93,7 @@ impl Known {
 pub(super) struct Step {
     key: Key,
     target: Target,
-    facts: Vec<Arc<UnitFacts>>,
+    facts: Facts,
     outline: Outline,
     from: Option<From>,
 }
@@ -108,6 +111,16 @@ struct From {
 impl Memory {
     pub(super) fn forget(&self) {
         self.states.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.resolved.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+
+    /// Resolves names in what the units of a program tell.
+    pub(super) fn resolve(&self, key: Key, told: Facts, symbols: Arc<SymbolTable>) -> Arc<Resolved> {
+        let known = || self.resolved.lock().unwrap_or_else(PoisonError::into_inner);
+        let old = known().get(&key).cloned();
+        let new = Arc::new(Resolved::new(told, symbols, key.1 == Family::Step7, old.as_deref()));
+        known().insert(key, new.clone());
+        new
     }
 
     /// Gets ready for the next edit, as far as that can be done before it comes.
@@ -119,7 +132,7 @@ impl Memory {
     }
 
     /// Starts from the state that is most like the program now.
-    pub(super) fn step(&self, key: Key, target: Target, facts: &[Arc<UnitFacts>], program: &ProgramIndex<'_>) -> Step {
+    pub(super) fn step(&self, key: Key, target: Target, facts: &Facts, program: &ProgramIndex<'_>) -> Step {
         let mut states = self.states.lock().unwrap_or_else(PoisonError::into_inner).remove(&key).unwrap_or_default();
         let of_target = (0..).zip(&states).filter(|it| keeps(key.1) && it.1.target == target);
         let outline = Outline::new(program);
@@ -140,7 +153,7 @@ impl Memory {
         if !states.is_empty() {
             self.states.lock().unwrap_or_else(PoisonError::into_inner).insert(key.clone(), states);
         }
-        Step { key, target, facts: facts.to_vec(), outline, from }
+        Step { key, target, facts: facts.clone(), outline, from }
     }
 
     /// Ends a step with what was found in its part, or in the whole program: `judged`. Returns all findings.

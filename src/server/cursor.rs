@@ -1,7 +1,5 @@
 //! What stands at a place, in terms of the program: what all requests about a position share.
 
-use std::sync::Arc;
-
 use rowan::{TextRange, TextSize};
 use smol_str::SmolStr;
 
@@ -152,7 +150,7 @@ pub(super) fn program_with<'s>(it: InFile<'s>, unit: Unit<'s>) -> Option<(Progra
 pub(super) struct InProgram<'s> {
     pub(super) it: InFile<'s>,
     pub(super) program: Program<'s>,
-    facts: Vec<Arc<UnitFacts>>,
+    facts: db::Facts,
 }
 
 impl<'s> InProgram<'s> {

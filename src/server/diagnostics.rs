@@ -1,21 +1,21 @@
 //! Findings as the protocol's diagnostics.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use lsp_types::{
     Code, CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Message, Range,
     Uri,
 };
 use rowan::{TextRange, TextSize};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::json;
 
 use super::convert::Encoding;
 use super::snapshot::{RootSnapshot, Snapshot};
 use crate::db::{self, FileFinding, SourceFile};
 use crate::lint::settings::{ConfigError, Origin};
-use crate::lint::{Rule, Severity};
+use crate::lint::{Rule, Severity, rules};
 use crate::load::{Wrong, WrongConfig};
 use crate::report::position::Headings;
 use crate::source::detect::Detected;
@@ -68,12 +68,9 @@ pub(super) fn of_file(snapshot: &Snapshot, root: &RootSnapshot, file: SourceFile
 }
 
 fn texts(root: &RootSnapshot, file: SourceFile, findings: &[FileFinding]) -> Vec<Arc<str>> {
-    let mut files = vec![file];
-    for it in findings.iter().flat_map(|it| &it.finding.related) {
-        if !files.contains(&it.place.file) {
-            files.push(it.place.file);
-        }
-    }
+    let (mut files, mut seen) = (vec![file], FxHashSet::from_iter([file]));
+    let related = findings.iter().flat_map(|it| &it.finding.related);
+    files.extend(related.map(|it| it.place.file).filter(|it| seen.insert(*it)));
     files.into_iter().map(|it| it.text(&root.db).clone()).collect()
 }
 
@@ -132,7 +129,11 @@ fn severity(severity: Severity) -> DiagnosticSeverity {
 
 /// The address of a rule's page, which the client may ask for as a document.
 pub(super) fn page_uri(rule: &Rule) -> Option<Uri> {
-    Uri::parse(&format!("{PAGES}:///{}/{}.md", rule.code, rule.name)).ok()
+    static PAGES_OF_RULES: LazyLock<FxHashMap<&str, Uri>> = LazyLock::new(|| {
+        let page = |it: &Rule| Uri::parse(&format!("{PAGES}:///{}/{}.md", it.code, it.name)).ok();
+        rules().iter().filter_map(|it| Some((it.code, page(it)?))).collect()
+    });
+    PAGES_OF_RULES.get(rule.code).cloned()
 }
 
 /// What is wrong with a configuration, in the text of its file.

@@ -19,21 +19,28 @@ pub(super) struct Document {
     pub(super) uri: Uri,
     pub(super) version: i32,
     pub(super) text: Arc<str>,
+    lines: LineIndex,
 }
 
 impl Document {
+    pub(super) fn new(uri: Uri, version: i32, text: String) -> Self {
+        Self { uri, version, lines: LineIndex::new(&text), text: text.into() }
+    }
+
     /// Applies changes one after the other: each speaks of the text that those before it made.
     pub(super) fn change(&mut self, changes: Vec<Change>, encoding: Encoding) {
         let mut text: Option<String> = None;
         for change in changes {
             match change {
-                Change::TextDocumentContentChangeWholeDocument(it) => text = Some(it.text),
+                Change::TextDocumentContentChangeWholeDocument(it) => {
+                    self.lines = LineIndex::new(&it.text);
+                    text = Some(it.text);
+                }
                 Change::TextDocumentContentChangePartial(it) => {
-                    let mut before = text.take().unwrap_or_else(|| self.text.to_string());
-                    let lines = LineIndex::new(&before);
-                    let range = encoding.text_range(&lines, &before, it.range);
-                    before.replace_range(std::ops::Range::<usize>::from(range), &it.text);
-                    text = Some(before);
+                    let text = text.get_or_insert_with(|| self.text.to_string());
+                    let range = std::ops::Range::<usize>::from(encoding.text_range(&self.lines, text, it.range));
+                    text.replace_range(range.clone(), &it.text);
+                    self.lines.edit(range, it.text.len(), text);
                 }
             }
         }
@@ -58,7 +65,7 @@ mod tests {
     #[test]
     fn changes_follow_one_another() {
         let uri = Uri::parse("file:///a.awl").unwrap();
-        let mut it = Document { uri, version: 1, text: "one\ntwo\n".into() };
+        let mut it = Document::new(uri, 1, "one\ntwo\n".to_owned());
         it.change(vec![partial((0, 3), (1, 0), ", "), partial((0, 0), (0, 3), "ONE")], Encoding::Utf16);
         assert_eq!(&*it.text, "ONE, two\n");
         it.change(vec![partial((9, 9), (9, 9), "end")], Encoding::Utf16);

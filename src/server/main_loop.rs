@@ -430,8 +430,7 @@ impl Server {
     fn did_open(&mut self, params: DidOpenTextDocumentParams) {
         let it = params.text_document;
         let path = convert::path_of(&it.uri);
-        Arc::make_mut(&mut self.documents)
-            .insert(path.clone(), Document { uri: it.uri, version: it.version, text: it.text.into() });
+        Arc::make_mut(&mut self.documents).insert(path.clone(), Document::new(it.uri, it.version, it.text));
         self.shown(&path);
     }
 

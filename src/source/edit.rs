@@ -1,7 +1,7 @@
 //! Where two texts differ.
 
 /// The place of an edit that makes one text of another, by the old one's offsets: where it starts and where it ends.
-pub(super) fn difference(old: &str, new: &str) -> (usize, usize) {
+pub(crate) fn difference(old: &str, new: &str) -> (usize, usize) {
     let (old, new) = (old.as_bytes(), new.as_bytes());
     let start = common_start(old, new);
     (start, old.len() - common_end(&old[start..], &new[start..]))

@@ -15,47 +15,57 @@ pub struct LineCol {
 /// Where the lines of a text start, and which of its bytes do not start a character.
 ///
 /// Lines end with LF, CRLF or CR. Every lookup takes time logarithmic in the size of the text at most. Memory: four
-/// bytes a line; a text that is not pure ASCII, one bit a byte more, one that leaves the Basic Multilingual Plane, two.
+/// bytes a line, and four for each byte that continues a character.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LineIndex {
     /// Starts with 0 and rises.
-    line_starts: Box<[u32]>,
+    line_starts: Vec<u32>,
     len: u32,
     /// Bytes that continue a character.
-    continuation: Option<BitSet>,
+    continuation: Vec<u32>,
     /// First bytes of characters that UTF-16 stores as two units.
-    astral: Option<BitSet>,
+    astral: Vec<u32>,
 }
 
 impl LineIndex {
     /// Reads the text once. Offsets are 32 bits wide, so of a text beyond 4 GiB only the start is indexed.
     pub fn new(text: &str) -> Self {
-        let bytes = text.as_bytes();
-        let bytes = bytes.get(..u32::MAX as usize).unwrap_or(bytes);
+        let bytes = indexed(text);
         let mut line_starts = Vec::with_capacity(bytes.len() / 24 + 1);
         line_starts.push(0);
         // Lines are short: a vector search for each break costs more than looking at eight bytes at a time.
-        let starts_after = |at: usize| match bytes.get(at) {
-            Some(b'\n') => true,
-            Some(b'\r') => bytes.get(at + 1) != Some(&b'\n'),
-            _ => false,
-        };
         for (word, at) in words(bytes).zip((0..).step_by(8)) {
             let mut found = equal_bytes(word, b'\n') | equal_bytes(word, b'\r');
             while found != 0 {
-                let at = at + found.trailing_zeros() as usize / 8;
-                if starts_after(at) {
-                    line_starts.push(at as u32 + 1);
+                let start = at + found.trailing_zeros() as usize / 8 + 1;
+                if is_line_start(bytes, start) {
+                    line_starts.push(start as u32);
                 }
                 found &= found - 1;
             }
         }
-        let (mut continuation, mut astral) = (None, None);
-        if !bytes.is_ascii() {
-            continuation = BitSet::new(bytes, |word| word >> 7 & !(word >> 6));
-            astral = BitSet::new(bytes, |word| word >> 7 & word >> 6 & word >> 5 & word >> 4);
+        let (continuation, astral) = wide(bytes, 0..bytes.len());
+        Self { line_starts, len: bytes.len() as u32, continuation, astral }
+    }
+
+    /// Follows an edit that has put `length` bytes in the place of the `removed` ones, and made `text`. Takes time for what
+    /// was put there; what lies behind it is moved alone.
+    pub fn edit(&mut self, removed: std::ops::Range<usize>, length: usize, text: &str) {
+        let bytes = indexed(text);
+        if bytes.len() < text.len() {
+            *self = Self::new(text);
+            return;
         }
-        Self { line_starts: line_starts.into(), len: bytes.len() as u32, continuation, astral }
+        let added = removed.start..removed.start + length;
+        let (from, to) = (removed.start as u32, removed.end as u32);
+        let delta = (length as u32).wrapping_sub(to - from);
+        // Whether a line starts somewhere hangs on the bytes before and behind.
+        let starts = (added.start..=added.end).filter(|&at| is_line_start(bytes, at)).map(|at| at as u32);
+        splice(&mut self.line_starts, from, to + 1, starts.collect(), delta);
+        let (continuation, astral) = wide(bytes, added);
+        splice(&mut self.continuation, from, to, continuation, delta);
+        splice(&mut self.astral, from, to, astral, delta);
+        self.len = bytes.len() as u32;
     }
 
     /// Number of lines. A text that ends with a line break ends with an empty line; there is always one.
@@ -111,20 +121,19 @@ impl LineIndex {
     /// The start of the character that holds the byte at `offset`.
     fn floor(&self, offset: TextSize) -> u32 {
         let mut offset = u32::from(offset).min(self.len);
-        if let Some(continuation) = &self.continuation {
-            while continuation.contains(offset) {
-                offset -= 1;
-            }
+        let mut before = self.continuation.partition_point(|&it| it <= offset);
+        while before > 0 && self.continuation[before - 1] == offset {
+            (before, offset) = (before - 1, offset - 1);
         }
         offset
     }
 
     fn characters(&self, start: u32, end: u32) -> u32 {
-        end - start - self.continuation.as_ref().map_or(0, |set| set.rank(end) - set.rank(start))
+        end - start - between(&self.continuation, start, end)
     }
 
     fn utf16_units(&self, start: u32, end: u32) -> u32 {
-        self.characters(start, end) + self.astral.as_ref().map_or(0, |set| set.rank(end) - set.rank(start))
+        self.characters(start, end) + between(&self.astral, start, end)
     }
 
     fn find(&self, place: LineCol, width: impl Fn(&Self, u32, u32) -> u32) -> Option<TextSize> {
@@ -142,16 +151,51 @@ impl LineIndex {
     }
 }
 
-/// A set of byte offsets with counting queries.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct BitSet {
-    words: Box<[u64]>,
-    /// Number of members before each block of words.
-    ranks: Box<[u32]>,
+/// As much of a text as offsets of 32 bits reach.
+fn indexed(text: &str) -> &[u8] {
+    text.as_bytes().get(..u32::MAX as usize).unwrap_or(text.as_bytes())
 }
 
-/// A word with 1 in each byte.
-const ONES: u64 = u64::from_le_bytes([1; 8]);
+/// Whether a line starts at an offset.
+fn is_line_start(bytes: &[u8], at: usize) -> bool {
+    match at.checked_sub(1).map(|it| bytes.get(it)) {
+        None | Some(Some(b'\n')) => true,
+        Some(Some(b'\r')) => bytes.get(at) != Some(&b'\n'),
+        _ => false,
+    }
+}
+
+/// Of some bytes of a text, those that continue a character, and those that start one of two units.
+fn wide(bytes: &[u8], range: std::ops::Range<usize>) -> (Vec<u32>, Vec<u32>) {
+    let (mut continuation, mut astral) = (Vec::new(), Vec::new());
+    for (chunk, at) in bytes.get(range.clone()).unwrap_or_default().chunks(64).zip((range.start..).step_by(64)) {
+        if chunk.is_ascii() {
+            continue;
+        }
+        for (&byte, at) in chunk.iter().zip(at as u32..) {
+            match byte {
+                0x80..0xC0 => continuation.push(at),
+                0xF0.. => astral.push(at),
+                _ => {}
+            }
+        }
+    }
+    (continuation, astral)
+}
+
+/// Puts offsets in the place of those from one up to another, and moves those behind.
+fn splice(offsets: &mut Vec<u32>, from: u32, to: u32, by: Vec<u32>, delta: u32) {
+    let place = |limit: u32| offsets.partition_point(|&it| it < limit);
+    let (start, end) = (place(from), place(to));
+    offsets.iter_mut().skip(end).for_each(|it| *it = it.wrapping_add(delta));
+    offsets.splice(start..end, by);
+}
+
+/// Number of offsets from one up to another.
+fn between(offsets: &[u32], start: u32, end: u32) -> u32 {
+    let before = |limit: u32| offsets.partition_point(|&it| it < limit) as u32;
+    before(end) - before(start)
+}
 
 /// The text by eight bytes, the first one lowest; the last of them is filled up with zeros.
 fn words(bytes: &[u8]) -> impl Iterator<Item = u64> {
@@ -160,47 +204,6 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = u64> {
             .map(u64::from_le_bytes)
             .unwrap_or_else(|_| it.iter().rfold(0, |word, &it| word << 8 | u64::from(it)))
     })
-}
-
-/// Words that share one entry of `ranks`.
-const BLOCK: usize = 8;
-
-impl BitSet {
-    /// The offsets of some bytes; `None` if there are none. `members` sets the lowest bit of each byte of a word that is one.
-    fn new(bytes: &[u8], members: impl Fn(u64) -> u64) -> Option<Self> {
-        // Gathers the lowest bit of each byte, that of the first byte lowest.
-        let gather = |word: u64| (members(word) & ONES).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-        let fold = |chunk: &[u8]| words(chunk).zip((0..).step_by(8)).fold(0, |all, (it, at)| all | gather(it) << at);
-        let words: Box<[u64]> = bytes.chunks(64).map(|chunk| if chunk.is_ascii() { 0 } else { fold(chunk) }).collect();
-        let mut members = 0;
-        let ranks = words
-            .chunks(BLOCK)
-            .map(|block| {
-                let before = members;
-                members += block.iter().map(|word| word.count_ones()).sum::<u32>();
-                before
-            })
-            .collect();
-        (members > 0).then_some(Self { words, ranks })
-    }
-
-    fn contains(&self, offset: u32) -> bool {
-        self.words.get(offset as usize / 64).is_some_and(|word| word >> (offset % 64) & 1 == 1)
-    }
-
-    /// Number of members below `offset`.
-    fn rank(&self, offset: u32) -> u32 {
-        let word = (offset as usize / 64).min(self.words.len());
-        let block = word / BLOCK;
-        // The block after the last one, if the text ends with a full one, holds no words.
-        let (block, before) = match self.ranks.get(block) {
-            Some(&before) => (block, before),
-            None => (self.ranks.len() - 1, self.ranks.last().copied().unwrap_or(0)),
-        };
-        let full = &self.words[block * BLOCK..word];
-        let partial = self.words.get(word).map_or(0, |bits| (bits & ((1 << (offset % 64)) - 1)).count_ones());
-        before + full.iter().map(|bits| bits.count_ones()).sum::<u32>() + partial
-    }
 }
 
 #[cfg(test)]
@@ -290,6 +293,23 @@ mod tests {
                 end = range.end();
             }
             prop_assert_eq!(end, TextSize::of(text.as_str()));
+        }
+
+        #[test]
+        fn edits_are_followed(
+            text in "([a\r\né😀]{0,9}){0,9}",
+            edits in prop::collection::vec((any::<(prop::sample::Index, prop::sample::Index)>(), "[b\r\né😀]{0,4}"), 1..9),
+        ) {
+            let mut text = text;
+            let mut index = LineIndex::new(&text);
+            for ((start, end), by) in edits {
+                let places: Vec<usize> = text.char_indices().map(|it| it.0).chain([text.len()]).collect();
+                let (start, end) = (*start.get(&places), *end.get(&places));
+                let removed = start.min(end)..start.max(end);
+                text.replace_range(removed.clone(), &by);
+                index.edit(removed, by.len(), &text);
+                prop_assert_eq!(&index, &LineIndex::new(&text));
+            }
         }
 
         #[test]

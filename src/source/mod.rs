@@ -10,7 +10,7 @@
 mod dbf;
 pub mod decode;
 pub mod detect;
-mod edit;
+pub(crate) mod edit;
 mod heading;
 pub mod line_index;
 mod scan;

@@ -36,7 +36,7 @@ impl Handle for Handler {
                 let model = db::model(it.db, unit);
                 let place = |range: TextRange| range + TextSize::new(offset);
                 if cursor::is_called(unit.entity(it.db)) {
-                    let calls = index.callers.get(at).map_or(0, Vec::len);
+                    let calls = index.callers.get(at).map_or(0, |it| it.len());
                     lens(place(model.heading()), format!("{} in the program", counted(calls, "call")));
                 }
                 let Some(chart) = facts.chart.as_ref().filter(|it| it.defines) else { continue };
