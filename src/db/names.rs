@@ -68,9 +68,13 @@ impl Fields {
             known.cloned().unwrap_or_else(|| Arc::new(Declaration::new(facts)))
         };
         let of_units: Arc<[Arc<Declaration>]> = named.iter().enumerate().map(of_unit).collect();
-        let same = old.as_ref().filter(|it| it.0.of_units == of_units).map(|it| it.0.all.clone());
-        let is_known = same.is_some();
-        let all = same.unwrap_or_else(|| Arc::new(Declarations::new(of_units.iter().map(AsRef::as_ref))));
+        let before = old.as_ref().map(|it| it.0);
+        let all = match before.filter(|it| it.of_units == of_units) {
+            Some(old) => old.all.clone(),
+            None => Arc::new(Declarations::new(of_units.iter().map(AsRef::as_ref))),
+        };
+        let all = before.map(|it| &it.all).filter(|it| **it == all).cloned().unwrap_or(all);
+        let is_known = before.is_some_and(|it| Arc::ptr_eq(&it.all, &all));
         let known = old.as_ref().map(|(old, same)| (&*old.placed, same));
         let placed = each(named, known, is_known, |it| all.resolve(Cow::Borrowed(it)));
         Self { of_units, all, placed }

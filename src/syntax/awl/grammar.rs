@@ -344,12 +344,19 @@ impl Grammar<'_, '_> {
 
     fn block_name(&mut self) {
         let name = self.p.start();
-        let numbered = self.p.at(Ident) && super::lexer::is_area(self.p.current_text().as_bytes());
+        let word = self.p.current_text();
+        let is_kind = super::lexer::is_area(word.as_bytes())
+            || ["UDT", "SFB", "SFC"].iter().any(|it| it.eq_ignore_ascii_case(word));
+        let numbered = self.p.at(Ident) && is_kind;
         if matches!(self.p.current(), Some(Ident | Address | QuotedSymbol)) {
             self.p.bump();
         }
-        if numbered && self.p.at(Number) && !self.p.newline_before() {
-            self.p.bump();
+        if numbered {
+            if self.p.at(Number) && !self.p.newline_before() {
+                self.p.bump();
+            } else {
+                self.missing("expected the number of the block");
+            }
         }
         self.p.complete(name, BlockName);
     }

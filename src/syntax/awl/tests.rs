@@ -756,6 +756,8 @@ fn faults_of_blocks() {
             "U: expected `BEGIN` before the code of the block",
         ),
         ("FUNCTION_BLOCK FB 1\nhello world\nBEGIN\nEND_FUNCTION_BLOCK", "hello: expected a declaration or `BEGIN`"),
+        ("FUNCTION FC : VOID\nBEGIN\nEND_FUNCTION", ":: expected the number of the block"),
+        ("TYPE UDT\nSTRUCT\na : INT;\nEND_STRUCT;\nEND_TYPE", "UDT: expected the number of the block"),
         (
             "FUNCTION_BLOCK FB 1\nVAR\n a : INT;\nBEGIN\nSET\nEND_FUNCTION_BLOCK",
             "VAR: this `VAR` is not closed: expected `END_VAR`",
