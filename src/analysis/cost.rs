@@ -61,10 +61,8 @@ impl PieceCost {
     /// `texts`: text blocks of the unit, each of which takes longer the more are active.
     fn new(networks: &[Network], model: &UnitModel, texts: u32) -> Self {
         let ways = Ways::new(networks, model);
-        let time_ns = Series::ALL.map(|series| {
-            let times: Vec<u64> = networks.iter().map(|it| time_ns(it, series, texts)).collect();
-            ways.longest(&times)
-        });
+        let times: Vec<[u64; 3]> = networks.iter().map(|it| times_ns(it, texts)).collect();
+        let time_ns = Series::ALL.map(|series| ways.longest(times.iter().map(|it| it[series.index()])));
         Self {
             kind: networks.first().map_or(CodeKind::Section, |it| it.kind),
             networks: u32::try_from(networks.len()).unwrap_or(u32::MAX),
@@ -81,12 +79,13 @@ fn elements(network: &Network) -> impl Iterator<Item = (Element, u32)> {
     network.elements.iter().copied().chain([(Element::Network, 0)])
 }
 
-fn time_ns(network: &Network, series: Series, texts: u32) -> u64 {
-    let each = |(element, quantity): (Element, u32)| {
+/// By series.
+fn times_ns(network: &Network, texts: u32) -> [u64; 3] {
+    elements(network).fold([0; 3], |sum, (element, quantity)| {
+        let Some(row) = element.row() else { return sum };
         let quantity = if is_text(element) { texts } else { quantity };
-        element.row()?.longest_ns(series, quantity)
-    };
-    elements(network).filter_map(each).fold(0, u64::saturating_add)
+        Series::ALL.map(|it| sum[it.index()].saturating_add(row.longest_ns(it, quantity).unwrap_or(0)))
+    })
 }
 
 fn bytes(network: &Network) -> u64 {
@@ -120,9 +119,9 @@ impl Ways {
     }
 
     /// The longest way from the first network on.
-    fn longest(&self, times: &[u64]) -> u64 {
+    fn longest(&self, times: impl ExactSizeIterator<Item = u64> + DoubleEndedIterator) -> u64 {
         let mut rest = vec![0_u64; times.len() + 1];
-        for (at, (&time, (targets, passes))) in times.iter().zip(&self.onwards).enumerate().rev() {
+        for (at, (time, (targets, passes))) in times.zip(&self.onwards).enumerate().rev() {
             let next = targets.iter().copied().chain(passes.then_some(at + 1));
             rest[at] = next.map(|it| rest[it]).max().unwrap_or(0).saturating_add(time);
         }

@@ -61,7 +61,7 @@ const LARGEST: usize = 256;
 impl Forms {
     pub fn new(model: &UnitModel) -> Self {
         let mut forms = Self::default();
-        let mut last = FxHashMap::default();
+        let (mut last, mut seen) = (FxHashMap::default(), Vec::new());
         let mut labels = model.labels.iter().peekable();
         let mut accesses = model.accesses.iter().peekable();
         for (at, statement) in (0..).zip(&model.statements) {
@@ -69,8 +69,9 @@ impl Forms {
             while let Some(it) = accesses.next_if(|it| it.statement <= at) {
                 own.push(it);
             }
-            let (hasher, seen) = (FxHasher::default(), FxHashMap::default());
-            let mut form = Form { model, forms: &mut forms, last: &mut last, hasher, seen };
+            seen.clear();
+            let hasher = FxHasher::default();
+            let mut form = Form { model, forms: &mut forms, last: &mut last, hasher, seen: &mut seen };
             while let Some(it) = labels.next_if(|it| it.statement <= at) {
                 form.operand(&it.name, Role::Own);
                 "label".hash(&mut form.hasher);
@@ -99,8 +100,8 @@ struct Form<'a> {
     /// How many operands stand before the last one that is the same.
     last: &'a mut FxHashMap<u64, u32>,
     hasher: FxHasher,
-    /// Expressions written so far, by their number.
-    seen: FxHashMap<ExprId, u32>,
+    /// Expressions written so far, few as they are.
+    seen: &'a mut Vec<ExprId>,
 }
 
 impl Form<'_> {
@@ -192,7 +193,7 @@ impl Form<'_> {
         let mut open = vec![Visit::Enter(id)];
         while let Some(it) = open.pop() {
             match it {
-                Visit::Enter(id) => match self.seen.get(&id) {
+                Visit::Enter(id) => match self.seen.iter().position(|it| *it == id) {
                     Some(number) => ("again", number).hash(&mut self.hasher),
                     None if self.seen.len() > LARGEST => return,
                     None => {
@@ -203,8 +204,8 @@ impl Form<'_> {
                     }
                 },
                 Visit::Leave(id) => {
-                    let number = u32::try_from(self.seen.len()).unwrap_or(u32::MAX);
-                    if self.seen.insert(id, number).is_none() {
+                    if !self.seen.contains(&id) {
+                        self.seen.push(id);
                         self.node(id);
                     }
                 }

@@ -6,8 +6,16 @@ use crate::model::entity::{BlockKind, BlockName, Entity, Part, Task};
 
 /// Splits off the first word: letters, digits and underscores.
 pub(super) fn word(text: &str) -> (&str, &str) {
-    let is_part = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
-    let ascii = text.bytes().position(|it| !is_part(it)).unwrap_or(text.len());
+    const IS_PART: [bool; 256] = {
+        let mut is_part = [false; 256];
+        let mut byte = 0;
+        while byte < is_part.len() {
+            is_part[byte] = (byte as u8).is_ascii_alphanumeric() || byte as u8 == b'_';
+            byte += 1;
+        }
+        is_part
+    };
+    let ascii = text.bytes().position(|it| !IS_PART[usize::from(it)]).unwrap_or(text.len());
     // Nearly all words end at a sign or a blank.
     let more = match text.as_bytes().get(ascii) {
         Some(it) if !it.is_ascii() => {

@@ -184,7 +184,10 @@ impl<'a> Space<'a> {
 
     /// Whether all conditions can have the values wanted of them at one moment.
     pub fn possible(&self, wanted: &[(ExprId, bool)]) -> Verdict {
-        self.decide(&Question { wanted, never: &[] })
+        let given: Vec<ExprId> = wanted.iter().filter(|it| it.1).map(|it| it.0).collect();
+        let others: Vec<[ExprId; 2]> = wanted.iter().filter(|it| !it.1).map(|it| [it.0, Exprs::TRUE]).collect();
+        let verdict = self.by_parts(&given, &others);
+        verdict.unwrap_or_else(|| self.decide(&Question { wanted, never: &[] }))
     }
 
     /// Whether all of the conditions can hold at once.

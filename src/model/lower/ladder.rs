@@ -130,11 +130,11 @@ impl Lowering {
         let ends: FxHashSet<TextRange> = ends.collect();
         let is_end = |flaw: Flaw, range: TextRange| flaw == Flaw::LeadsNowhere && ends.contains(&range);
         let mut flaws = grid.flaws();
+        flaws.retain(|it| !is_end(it.0, it.1));
         if !flaws.is_empty() && !grid.is_read() {
             // The other cells may stand elsewhere than they seem to.
             flaws.clear();
         }
-        let flaws: Vec<_> = flaws.into_iter().filter(|it| !is_end(it.0, it.1)).collect();
         for (flaw, range, related) in flaws {
             self.flaw(flaw, range).related.extend(related.map(|it| (it, "this wire goes round it")));
         }

@@ -42,7 +42,8 @@ impl Kind {
 }
 
 pub(super) struct Pl7 {
-    pub(super) b: Builder,
+    /// In a box, because a chart hands it from piece of code to piece of code.
+    pub(super) b: Box<Builder>,
     /// The interface of a DFB type, by its names; empty elsewhere.
     pub(super) items: dfb::Items,
 }
@@ -63,7 +64,7 @@ fn heading(node: SyntaxNode<'_>) -> TextRange {
 
 impl Pl7 {
     pub(super) fn new(root: SyntaxNode<'_>, entity: Entity, language: Language) -> Self {
-        let b = Builder::new(entity, language, heading(root), root.text_range().len());
+        let b = Box::new(Builder::new(entity, language, heading(root), root.text_range().len()));
         let mut pl7 = Self { b, items: dfb::Items::default() };
         dfb::enter(&mut pl7, root);
         pl7

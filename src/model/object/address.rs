@@ -1,6 +1,7 @@
 //! What readers of addresses share: a cursor over the text, its numbers, and an object before it has a text.
 
 use crate::target::Range;
+use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
 use smol_str::SmolStr;
@@ -119,6 +120,15 @@ impl<'a> Cursor<'a> {
 
     pub(super) fn need_number(&mut self, what: &str) -> Result<Number<'a>, AddressError> {
         self.number().ok_or_else(|| malformed(format!("the {what} is missing")))
+    }
+}
+
+/// Nearly always it is written so.
+pub(super) fn upper_case(address: &str) -> Cow<'_, str> {
+    if address.bytes().any(|it| it.is_ascii_lowercase()) {
+        Cow::Owned(address.to_ascii_uppercase())
+    } else {
+        Cow::Borrowed(address)
     }
 }
 

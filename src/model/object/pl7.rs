@@ -3,11 +3,10 @@
 //! Numbers that only some controller lacks are not judged here: that is the business of [`crate::target`].
 
 use crate::target::{Range, pl7 as target};
-use std::borrow::Cow;
 
 use smol_str::{SmolStr, format_smolstr};
 
-use super::address::{Cursor, LONGEST_SUGGESTION_SOURCE, Number, Place, malformed};
+use super::address::{Cursor, LONGEST_SUGGESTION_SOURCE, Number, Place, malformed, upper_case};
 use super::{AddressError, AddressErrorKind, Area, Class, Object, Rights, Type};
 
 /// Object numbers above this one exist on no controller. The largest counts of the manual are 32634 bits (PL7:1691) and
@@ -40,15 +39,6 @@ pub fn parse(address: &str) -> Result<Object, AddressError> {
     match read(&upper) {
         Ok(place) => Ok(place.object(address.into(), BLOCK_BITS)),
         Err(error) => Err(with_suggestion(error, &upper)),
-    }
-}
-
-/// Nearly always it is written so.
-fn upper_case(address: &str) -> Cow<'_, str> {
-    if address.bytes().any(|it| it.is_ascii_lowercase()) {
-        Cow::Owned(address.to_ascii_uppercase())
-    } else {
-        Cow::Borrowed(address)
     }
 }
 

@@ -5,7 +5,7 @@
 
 use smol_str::{SmolStr, format_smolstr};
 
-use super::address::{Cursor, LONGEST_SUGGESTION_SOURCE, Number, Place, malformed, out_of_range};
+use super::address::{Cursor, LONGEST_SUGGESTION_SOURCE, Number, Place, malformed, out_of_range, upper_case};
 use super::{AddressError, AddressErrorKind, Area, Class, Object, Rights, Type};
 use crate::target::Range;
 use crate::target::pl72::{self as target, Writer};
@@ -40,7 +40,7 @@ pub struct Address {
 /// [`AddressErrorKind::Malformed`] with the nearest valid form where there is one; [`AddressErrorKind::OutOfRange`] for
 /// a number that no controller has.
 pub fn parse(address: &str) -> Result<Address, AddressError> {
-    let upper = address.to_ascii_uppercase();
+    let upper = upper_case(address);
     match read(&upper) {
         Ok((place, index)) => {
             let index = index.map(|(text, place)| place.object(text.into(), BLOCK_BITS));
@@ -58,7 +58,7 @@ pub fn parse(address: &str) -> Result<Address, AddressError> {
 
 /// What an address names; `None` when the text is none. What would be one instead is not looked for.
 pub fn class_of(text: &str) -> Option<Class> {
-    read(&text.to_ascii_uppercase()).ok().map(|(place, _)| place.class)
+    read(&upper_case(text)).ok().map(|(place, _)| place.class)
 }
 
 /// Whether an object is the preset of a function block: `T0,P`.
@@ -118,10 +118,10 @@ pub enum ChannelItem {
     Word(u32),
 }
 
-/// The channel that an address of inputs or outputs starts with, string or extracted bit left aside; `None` for others.
+/// The channel that an address of inputs or outputs, as [`parse`] reads it, starts with, string or extracted bit left aside;
+/// `None` for others.
 pub fn channel(address: &str) -> Option<Channel> {
-    let upper = address.to_ascii_uppercase();
-    read(&upper).ok()?;
+    let upper = upper_case(address);
     let mut at = Cursor { rest: &upper };
     let (is_output, is_word) = match at.letters() {
         "I" => (false, false),
@@ -426,15 +426,15 @@ fn module_fault(at: &mut Cursor<'_>) -> Result<Place, AddressError> {
 }
 
 /// The digits before the comma: the module, or rack and module.
-struct ModuleNumber {
+struct ModuleNumber<'a> {
     has_rack: bool,
     rack: u32,
-    module: u32,
+    module: Number<'a>,
 }
 
-impl ModuleNumber {
+impl<'a> ModuleNumber<'a> {
     /// `y`: module 0 to 7 of rack 0 or of a controller without racks; `xy`: rack 0 or 1 and module 0 to 7.
-    fn read(at: &mut Cursor<'_>) -> Result<Self, AddressError> {
+    fn read(at: &mut Cursor<'a>) -> Result<Self, AddressError> {
         let number = at.need_number("number of the module")?;
         let part = |value| Number { text: number.text, value };
         let has_rack = number.text.len() > 1;
@@ -442,13 +442,15 @@ impl ModuleNumber {
             return Err(number.missing("module", "rack 0 or 1, module 0 to 7 (PL72:196-198)"));
         }
         let rack = if has_rack { part(number.value / 10).within("rack in module", 0..=1, "PL72:196")? } else { RACK_0 };
-        let module = part(number.value % 10).within("module", 0..=7, "PL72:198")?;
+        let module = part(number.value % 10);
+        module.within("module", 0..=7, "PL72:198")?;
         Ok(Self { has_rack, rack, module })
     }
 
     /// One name a module: `I01,3` is `I1,3`.
     fn name(rack: u32, module: u32) -> SmolStr {
-        if rack == RACK_0 { format_smolstr!("{module}") } else { format_smolstr!("{rack}{module}") }
+        let rack = (rack != RACK_0).then_some(rack);
+        rack.into_iter().chain([module]).filter_map(|it| char::from_digit(it, 10)).collect()
     }
 }
 
@@ -466,7 +468,6 @@ fn read_channel(at: &mut Cursor<'_>, is_output: bool) -> Result<Channel, Address
         }
         [tens, units] if tens.is_ascii_digit() && units.is_ascii_digit() && !has_rack => {
             let number = Number { text, value: u32::from(tens - b'0') * 10 + u32::from(units - b'0') };
-            let module = Number { text: &module.to_string(), value: module };
             let module = module.within("module in front of a channel of two digits", 0..=3, "PL72:96")?;
             // The event inputs are on the base unit alone.
             let (last, source) = match (is_output, module) {
@@ -483,7 +484,7 @@ fn read_channel(at: &mut Cursor<'_>, is_output: bool) -> Result<Channel, Address
             ));
         }
     };
-    Ok(Channel { is_output, has_rack, rack, module, item })
+    Ok(Channel { is_output, has_rack, rack, module: module.value, item })
 }
 
 fn input_or_output(at: &mut Cursor<'_>, is_output: bool) -> Result<Place, AddressError> {

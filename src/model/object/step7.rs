@@ -3,10 +3,9 @@
 //! The source manual shows the operands by example; letters, the English set and the status bits come from the vendor's
 //! general documentation. What only some CPU lacks is the business of [`crate::target`].
 
-use std::borrow::Cow;
-
 use smol_str::{SmolStr, SmolStrBuilder, StrExt, ToSmolStr};
 
+use super::address::upper_case;
 use super::{AddressError, AddressErrorKind, Area, Class, Footprint, Object, Rights, Type};
 use crate::model::entity::{BlockKind, BlockName};
 use crate::syntax::Mnemonics;
@@ -108,14 +107,6 @@ fn compact(operand: &str) -> SmolStr {
         }
     }
     text.finish()
-}
-
-/// The operand in capitals, which nearly all are.
-fn capitals(compact: &str) -> Cow<'_, str> {
-    match compact.bytes().any(|it| it.is_ascii_lowercase()) {
-        true => Cow::Owned(compact.to_ascii_uppercase()),
-        false => Cow::Borrowed(compact),
-    }
 }
 
 struct Place {
@@ -236,7 +227,7 @@ fn read(compact: &str, mnemonics: Mnemonics) -> Result<Place, AddressError> {
     if let Some((name, item)) = quoted_block(compact) {
         return data_item(BlockName::Symbol(name), item, compact);
     }
-    let upper = capitals(compact);
+    let upper = upper_case(compact);
     if let Some(place) = indirect(&upper, mnemonics) {
         return Ok(place);
     }
@@ -345,7 +336,7 @@ fn block(kind: BlockKind, letters: &str, rest: &str, compact: &str) -> Result<Pl
 
 /// What stands after `DB5.` or `"Data".`: `DBW0`, or the name of a field, whose place only the block's declaration tells.
 fn data_item(name: BlockName, item: &str, compact: &str) -> Result<Place, AddressError> {
-    let upper = capitals(item);
+    let upper = upper_case(item);
     let digits = upper.bytes().position(|it| !it.is_ascii_alphabetic()).unwrap_or(upper.len());
     let (letters, rest) = upper.split_at(digits);
     let ty = letters.strip_prefix("DB").and_then(|format| format_type(format, Bits::X));
