@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use rustc_hash::FxHashMap;
 
 use super::conditions::{Lessons, Space, Verdict};
+use super::facts::UnitFacts;
 use super::program::{GlobalUse, ObjectUses, ProgramIndex};
 use crate::model::UnitModel;
 use crate::model::dfb::Role;
@@ -345,6 +346,18 @@ fn is_local(place: &Footprint) -> bool {
     matches!(place.area, Area::Local | Area::LocalName(_) | Area::OpenInstance)
 }
 
+/// What a unit loses of objects that are its own, with their numbers. A variable that lies in a data block which others look
+/// into is not: it has a place there.
+fn owned(facts: &UnitFacts) -> impl Iterator<Item = (&Lost, u32)> {
+    let mut local = facts.lost.iter().filter(|it| it.local).peekable();
+    let mut written: FxHashMap<u32, u32> = FxHashMap::default();
+    for it in facts.uses.iter().filter(|_| local.peek().is_some()) {
+        written.entry(it.anchor).or_insert(it.object);
+    }
+    let is_own = |it: u32| facts.objects.get(it as usize).is_some_and(|it| is_local(&it.object.footprint));
+    local.filter_map(move |it| Some((it, written.get(&it.write).copied().filter(|it| is_own(*it))?)))
+}
+
 /// The writes of one object that are lost in one unit.
 pub struct LostWrites<'a> {
     pub unit: u32,
@@ -360,15 +373,8 @@ pub fn of_program<'a, 'n>(program: &'a ProgramIndex<'a>, neighbours: impl Fn(u32
     let mut found = Vec::new();
     for (unit, facts) in program.judged_units() {
         let mut own: BTreeMap<u32, Vec<&Lost>> = BTreeMap::new();
-        let mut local = facts.lost.iter().filter(|it| it.local).peekable();
-        let mut written: FxHashMap<u32, u32> = FxHashMap::default();
-        for it in facts.uses.iter().filter(|_| local.peek().is_some()) {
-            written.entry(it.anchor).or_insert(it.object);
-        }
-        for it in local {
-            if let Some(object) = written.get(&it.write) {
-                own.entry(*object).or_default().push(it);
-            }
+        for (it, object) in owned(facts) {
+            own.entry(object).or_default().push(it);
         }
         found.extend(own.into_iter().filter_map(|(object, writes)| {
             let text = facts.objects.get(object as usize)?.object.text.as_str();
@@ -379,7 +385,10 @@ pub fn of_program<'a, 'n>(program: &'a ProgramIndex<'a>, neighbours: impl Fn(u32
     for (at, uses) in (0..).zip(&program.objects) {
         let lost = |it: &'a GlobalUse<'a>| {
             let facts = program.units.get(it.unit as usize).filter(|it| !it.lost.is_empty())?;
-            let all = || facts.lost.iter().filter(|it| !it.local).map(|it| (it.write, it)).collect();
+            let all = || {
+                let own: Vec<u32> = owned(facts).map(|it| it.0.write).collect();
+                facts.lost.iter().filter(|it| !own.contains(&it.write)).map(|it| (it.write, it)).collect()
+            };
             Some((it, *shared.entry(it.unit).or_insert_with(all).get(&it.it.anchor)?))
         };
         let writes: Vec<_> = uses.with_mode(|it| it.assigns() || it == Mode::Store).filter_map(lost).collect();
