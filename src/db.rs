@@ -477,6 +477,12 @@ pub fn programs_of<'db>(db: &'db dyn Db, file: SourceFile) -> Box<[Program<'db>]
     programs(db).iter().copied().filter(|it| it.files(db).contains(&file)).collect()
 }
 
+/// The programs that know what a file declares: those it belongs to, and those that share its variables.
+pub fn programs_with<'db>(db: &'db dyn Db, file: SourceFile) -> impl Iterator<Item = Program<'db>> {
+    let knows = move |it: &Program<'db>| it.files(db).contains(&file) || it.variables(db).contains(&file);
+    programs(db).iter().copied().filter(knows)
+}
+
 /// Units of a program: file order, then order in the file; those of shared variables last.
 #[salsa::tracked(returns(deref))]
 pub fn program_units<'db>(db: &'db dyn Db, program: Program<'db>) -> Box<[Unit<'db>]> {

@@ -1,9 +1,13 @@
 -- plclint in Neovim 0.7 and later: copy it to a file that your init.lua requires.
 
 local extensions = { 'awl', 'stl', 's5', 'il', 'st', 'ld', 'gr7', 'sfc', 'dfb', 'fef', 'scy' }
+-- Symbol tables: a new name changes them, too.
+local tables = { 'sdf', 'asc', 'seq', 'dif' }
 local is_program = {}
-for _, extension in ipairs(extensions) do
-  is_program[extension] = true
+for _, list in ipairs({ extensions, tables }) do
+  for _, extension in ipairs(list) do
+    is_program[extension] = true
+  end
 end
 
 local function parent(path)

@@ -15,6 +15,7 @@ mod diagnostics;
 mod document;
 mod edits;
 mod main_loop;
+mod names;
 mod requests;
 mod snapshot;
 mod state;

@@ -507,6 +507,25 @@ impl Target {
         }
     }
 
+    /// Longest symbol, in characters.
+    pub const fn symbol_length(&self) -> Option<Limit> {
+        match self.family {
+            Family::Pl7 => Some(pl7::SYMBOL_LENGTH),
+            Family::Pl72 => None,
+            Family::Step5 => Some(step5::SYMBOL_LENGTH),
+            Family::Step7 => Some(step7::SYMBOL_LENGTH),
+        }
+    }
+
+    /// Longest name of a parameter or variable that a block declares, in characters; `None` where they are symbols.
+    pub const fn field_length(&self) -> Option<Limit> {
+        match self.family {
+            Family::Pl7 | Family::Pl72 => None,
+            Family::Step5 => Some(step5::FORMAL_LENGTH),
+            Family::Step7 => Some(step7::SYMBOL_LENGTH),
+        }
+    }
+
     /// Values on the stack of `MPS`; `None` where there is no such stack.
     pub const fn stack_depth(&self) -> Option<Limit> {
         match self.family {
@@ -603,6 +622,7 @@ mod tests {
         assert_eq!(pl7.label_numbers().map(|it| (it.contains(999), it.contains(1000))), Some((true, false)));
         assert_eq!((pl7.label_length(), step7.label_numbers(), step7.stack_depth()), (None, None, None));
         assert_eq!(step7.label_length(), Some(Limit::new(4, "S7:315")));
+        assert_eq!(pl7.symbol_length(), Some(Limit::new(32, "PL7:1198")));
         assert_eq!(pl7.stack_depth(), Some(Limit::new(3, "PL7:3232")));
         assert_eq!(target("CPU 314").watchdog_ms().map(|it| it.value), Some(150));
         assert_eq!(pl7.watchdog_ms().map(|it| it.value), Some(250));

@@ -9,6 +9,12 @@ const GENERAL: &str = "the vendor's general documentation";
 /// Longest jump label, in characters.
 pub const LABEL_LENGTH: Limit = Limit::new(4, GENERAL);
 
+/// Longest symbol, in characters.
+pub const SYMBOL_LENGTH: Limit = Limit::new(24, GENERAL);
+
+/// Longest formal operand of a function block, in characters.
+pub const FORMAL_LENGTH: Limit = Limit::new(4, GENERAL);
+
 /// Nesting expressions `U( O(` open at once.
 pub const PARENTHESIS_DEPTH: Limit = Limit::new(6, GENERAL);
 

@@ -6,6 +6,9 @@ use crate::model::entity::BlockKind;
 /// Longest jump label, in characters.
 pub const LABEL_LENGTH: Limit = Limit::new(4, "S7:315");
 
+/// Longest symbol, and longest name that a block declares, in characters.
+pub const SYMBOL_LENGTH: Limit = Limit::new(24, GENERAL);
+
 /// Nesting expressions `U( O( X(` open at once. Not in the source manual.
 pub const PARENTHESIS_DEPTH: Limit = Limit::new(7, "the vendor's general documentation");
 

@@ -5,5 +5,6 @@ mod edits;
 mod findings;
 #[path = "../common/numbers.rs"]
 mod numbers;
+mod rename;
 mod requests;
 mod robust;

@@ -75,7 +75,7 @@ fn pl7() -> Client {
 }
 
 /// A request about the place where `needle` stands in a file, `within` characters into it.
-fn at(client: &Client, path: &str, text: &str, needle: &str, within: usize) -> Value {
+pub fn at(client: &Client, path: &str, text: &str, needle: &str, within: usize) -> Value {
     let offset = text.find(needle).unwrap_or_else(|| panic!("{needle}")) + within;
     let before = &text[..offset];
     let line = before.matches('\n').count();
@@ -90,7 +90,7 @@ fn range(it: &Value) -> String {
     format!("{}-{}", place("start"), place("end"))
 }
 
-fn locations(client: &Client, answer: &Value) -> Vec<String> {
+pub fn locations(client: &Client, answer: &Value) -> Vec<String> {
     let one = |it: &Value| format!("{}:{}", client.name(it["uri"].as_str().unwrap()), range(&it["range"]));
     let mut found: Vec<String> = answer.as_array().into_iter().flatten().map(one).collect();
     found.sort();
@@ -98,7 +98,7 @@ fn locations(client: &Client, answer: &Value) -> Vec<String> {
 }
 
 /// The text that edits of a `WorkspaceEdit` make of a file.
-fn edited(client: &Client, edit: &Value, path: &str, text: &str) -> String {
+pub fn edited(client: &Client, edit: &Value, path: &str, text: &str) -> String {
     let uri = client.uri(path);
     let changes = edit["documentChanges"].as_array().unwrap();
     let own = changes.iter().filter(|it| it["textDocument"]["uri"] == uri.as_str());

@@ -9,6 +9,7 @@ use crate::db::FilePlace;
 use crate::model::object::{Area, Class, Object};
 use crate::model::unit::Callee;
 use crate::server::cursor::{self, Called, InProgram, InUnit, Named, Target, What};
+use crate::server::names;
 use crate::server::snapshot::Snapshot;
 
 pub(super) struct Handler;
@@ -20,17 +21,21 @@ impl Handle for Handler {
         let position = params.text_document_position_params;
         let Some(it) = snapshot.file(&position.text_document.uri) else { return Ok(None) };
         let Some(cursor) = InUnit::at(it, it.offset(position.position)) else { return Ok(None) };
-        let Some(target) = cursor.target() else { return Ok(None) };
-        let found = match &target.what {
-            What::Label { name, part } => {
-                let labels = cursor.model.labels.iter().filter(|it| it.name == *name && it.part == *part);
+        let target = cursor.target();
+        let found = match target {
+            Some(Target { what: What::Label { name, part }, .. }) => {
+                let labels = cursor.model.labels.iter().filter(|it| it.name == name && it.part == part);
                 labels.map(|label| FilePlace { file: it.file, range: cursor.in_file(label.range) }).collect()
             }
-            _ => match cursor.program() {
-                Some((program, unit)) => {
-                    let program = InProgram::new(it, program);
-                    places(&cursor, &target, &program, &program.index(), unit)
-                }
+            target => match cursor.program() {
+                Some((program, unit)) => match (names::declaration_at(&cursor), target) {
+                    (Some(place), _) => vec![place],
+                    (None, Some(target)) => {
+                        let program = InProgram::new(it, program);
+                        places(&cursor, &target, &program, &program.index(), unit)
+                    }
+                    (None, None) => Vec::new(),
+                },
                 None => Vec::new(),
             },
         };

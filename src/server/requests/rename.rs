@@ -1,20 +1,27 @@
-//! `textDocument/rename`: another name for a symbol or a label, wherever it stands.
+//! `textDocument/rename`: another name for a symbol, a label, or what a block declares, wherever it stands.
+
+use std::path::Path;
 
 use lsp_types::{RenameParams, RenameRequest};
 use rowan::{TextRange, TextSize};
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 use super::{Answer, Fault, Handle};
-use crate::db::{self, FilePlace, Program, Unit};
-use crate::model::entity::Family;
-use crate::model::object::Class;
+use crate::db::{self, FilePlace, Program, SourceFile, Unit};
+use crate::model::entity::{BlockName, Entity, Family};
+use crate::model::layout::Elementary;
+use crate::model::object::{Class, step7};
 use crate::model::symbols::key;
+use crate::model::unit::Callee;
 use crate::server::cursor::{InUnit, What};
 use crate::server::edits::Edits;
+use crate::server::names::{self, Declared, Names, place_in};
 use crate::server::snapshot::{InFile, Snapshot};
 use crate::source::detect::Detected;
+use crate::source::symlist;
 use crate::syntax::{Language, SyntaxKind};
-use crate::target::{Target, pl7};
+use crate::target::{Limit, Target};
 
 pub(super) struct Handler;
 
@@ -25,21 +32,13 @@ impl Handle for Handler {
         let position = params.text_document_position_params;
         let Some(it) = snapshot.file(&position.text_document.uri) else { return Ok(None) };
         let Some(renamed) = renamed(it, it.offset(position.position)) else {
-            return Err(Fault::Refused("only symbols and labels can be renamed".to_owned()));
+            return Err(Fault::Refused("only labels and names that the program declares can be renamed".to_owned()));
         };
-        let new_name = params.new_name.trim();
+        let changes = renamed.changes(it, params.new_name.trim()).map_err(Fault::Refused)?;
         let mut edits = Edits::default();
-        match &renamed.kind {
-            Kind::Symbol { program, name } => {
-                is_free_symbol(it, *program, name, new_name).map_err(Fault::Refused)?;
-                for place in symbol_places(it, *program, name) {
-                    edits.replace(snapshot, it.root, place, new_name);
-                }
-            }
-            Kind::Label { places, language, others } => {
-                let new = label(new_name, *language, others).map_err(Fault::Refused)?;
-                places.iter().for_each(|&place| edits.replace(snapshot, it.root, place, &new));
-            }
+        let mut seen = FxHashSet::default();
+        for (place, by) in changes.into_iter().filter(|it| seen.insert(it.0)) {
+            edits.replace(snapshot, it.root, place, &by);
         }
         Ok(Some(edits.finish(snapshot)))
     }
@@ -54,9 +53,16 @@ pub(super) struct Renamed<'s> {
 }
 
 enum Kind<'s> {
-    /// Declared by the program.
+    /// Declared by the programs of a family that share it.
     Symbol {
-        program: Program<'s>,
+        family: Family,
+        programs: Vec<Program<'s>>,
+        name: SmolStr,
+    },
+    /// A parameter, variable or component that a block declares.
+    Field {
+        unit: Unit<'s>,
+        anchor: u32,
         name: SmolStr,
     },
     Label {
@@ -66,14 +72,13 @@ enum Kind<'s> {
     },
 }
 
+/// What is written in place of a name.
+type Change = (FilePlace, String);
+
 pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
-    // The text of a project is made of tables.
-    if it.file.detected(it.db) == Detected::Stx {
-        return None;
-    }
     let cursor = InUnit::at(it, at)?;
-    let target = cursor.target()?;
-    if let What::Label { name, part } = &target.what {
+    let target = cursor.target();
+    if let Some(What::Label { name, part }) = target.as_ref().map(|it| &it.what) {
         let model = cursor.model;
         let is_it = |of: &SmolStr, in_part: u32| of == name && in_part == *part;
         let labels = model.labels.iter().filter(|it| is_it(&it.name, it.part)).map(|it| it.range);
@@ -83,9 +88,10 @@ pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
             model.labels.iter().filter(|it| it.part == *part && it.name != *name).map(|it| it.name.clone()).collect();
         // A jump that leads nowhere would lead there.
         others.extend(model.jumps.iter().filter(|it| it.part == *part && it.label != *name).map(|it| it.label.clone()));
+        let range = target.as_ref()?.range;
         return Some(Renamed {
-            range: cursor.in_file(target.range),
-            text: cursor.text(target.range).to_owned(),
+            range: cursor.in_file(range),
+            text: cursor.text(range).to_owned(),
             kind: Kind::Label {
                 places: labels.chain(jumps).map(place).collect(),
                 language: cursor.unit.language(it.db),
@@ -93,42 +99,127 @@ pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
             },
         });
     }
-    let is_symbol = match &target.what {
-        What::Symbol(_) => true,
-        What::Object(object) => cursor.model.objects.get(*object as usize)?.class == Class::Symbol,
-        What::Call(call) => {
-            matches!(cursor.model.calls.get(*call as usize)?.callee, crate::model::unit::Callee::Instance(_))
+    let program = cursor.program()?.0;
+    let (range, kind) = match program.family(it.db) {
+        Family::Pl7 => {
+            let token = cursor.token().filter(|it| it.kind() == SyntaxKind::Ident)?;
+            let is_symbol = match target?.what {
+                What::Symbol(_) => true,
+                What::Object(object) => cursor.model.objects.get(object as usize)?.class == Class::Symbol,
+                What::Call(call) => matches!(cursor.model.calls.get(call as usize)?.callee, Callee::Instance(_)),
+                _ => false,
+            };
+            (token.text_range(), is_symbol.then(|| symbol(it, program, key(token.text())))??)
         }
-        _ => false,
+        Family::Step7 | Family::Step5 => {
+            let word = names::word_at(&cursor)?;
+            let name = key(cursor.text(word.range));
+            let kind = match word.declared {
+                Declared::Symbol(name) => symbol(it, program, name)?,
+                Declared::Field(unit, anchor) => Kind::Field { unit, anchor, name },
+            };
+            (word.range, kind)
+        }
+        Family::Pl72 => return None,
     };
-    let (program, _) = cursor.program()?;
-    let token = cursor.token().filter(|it| is_symbol && it.kind() == SyntaxKind::Ident)?;
-    let name = key(token.text());
-    let is_declared = declaring(it, program).any(|facts| facts.symbols.iter().any(|it| key(&it.name) == name));
-    (program.family(it.db) == Family::Pl7 && is_declared).then(|| Renamed {
-        range: cursor.in_file(token.text_range()),
-        text: token.text().to_owned(),
-        kind: Kind::Symbol { program, name },
-    })
+    Some(Renamed { range: cursor.in_file(range), text: cursor.text(range).to_owned(), kind })
 }
 
-fn declaring<'s>(it: InFile<'s>, program: Program<'s>) -> impl Iterator<Item = &'s crate::analysis::facts::UnitFacts> {
-    db::program_units(it.db, program).iter().map(move |&unit| &**db::facts(it.db, unit))
+/// A symbol that a program declares, with all programs that see the same declaration.
+fn symbol<'s>(it: InFile<'s>, program: Program<'s>, name: SmolStr) -> Option<Kind<'s>> {
+    let mut programs = vec![program];
+    let mut is_declared = false;
+    for &unit in db::program_units(it.db, program) {
+        let is_block = matches!(unit.entity(it.db).name(), Some(BlockName::Symbol(of)) if *of == name);
+        if is_block || db::facts(it.db, unit).symbols.iter().any(|it| key(&it.name) == name) {
+            is_declared = true;
+            programs.extend(db::programs_with(it.db, unit.file(it.db)));
+        }
+    }
+    let family = program.family(it.db);
+    let mut seen = FxHashSet::default();
+    programs.retain(|it_| it_.family(it.db) == family && seen.insert(*it_));
+    is_declared.then_some(Kind::Symbol { family, programs, name })
+}
+
+impl<'s> Renamed<'s> {
+    /// All that changes with the name, or why it cannot be the new one.
+    fn changes(&self, it: InFile<'s>, new: &str) -> Result<Vec<Change>, String> {
+        let changes: Vec<Change> = match &self.kind {
+            Kind::Label { places, language, others } => {
+                let new = label(new, *language, others)?;
+                places.iter().map(|place| (*place, new.clone())).collect()
+            }
+            Kind::Symbol { family: Family::Pl7, programs, name } => {
+                programs.iter().try_for_each(|&program| is_free_symbol(it, program, name, new))?;
+                let places = programs.iter().flat_map(|&program| symbol_places(it, program, name));
+                places.map(|place| (place, new.to_owned())).collect()
+            }
+            Kind::Symbol { family, programs, name } => {
+                let new = unmarked(new);
+                is_symbol(*family, new)?;
+                let mut changes = Vec::new();
+                for &program in programs {
+                    let names = Names::new(it.db, program);
+                    if key(new) != *name && names.declares(&key(new)) {
+                        return Err(format!("`{new}` is a symbol of the program already"));
+                    }
+                    for (unit, word) in names.all(name, &Declared::Symbol(name.clone())) {
+                        if !word.marked {
+                            is_bare(it, &names, unit, name, new)?;
+                        }
+                        changes.push(in_unit(it, unit, word.range, new)?);
+                    }
+                }
+                changes
+            }
+            Kind::Field { unit, anchor, name } => {
+                let new = unmarked(new);
+                let (declaring, language) = (db::model(it.db, *unit), unit.language(it.db));
+                is_field(Family::of(language).unwrap_or(Family::Step7), new)?;
+                let beside = names::siblings(declaring.fields(), *anchor).unwrap_or_default();
+                if beside.iter().any(|it| it.anchor != *anchor && it.name == key(new)) {
+                    return Err(format!("`{new}` is declared there already"));
+                }
+                let declared = Declared::Field(*unit, *anchor);
+                let mut changes = Vec::new();
+                for program in db::programs_with(it.db, unit.file(it.db)) {
+                    let names = Names::new(it.db, program);
+                    for (unit, word) in names.all(name, &declared) {
+                        if !word.marked {
+                            is_bare(it, &names, unit, name, new)?;
+                        }
+                        changes.push(in_unit(it, unit, word.range, new)?);
+                    }
+                }
+                changes
+            }
+        };
+        match changes.iter().find(|change| is_listing(change.0.file, it)) {
+            Some((place, _)) => Err(format!("`{}` declares it, and is no text", place.file.path(it.db))),
+            None => Ok(changes),
+        }
+    }
+}
+
+/// Whether what is shown as the text of a file was made of its tables.
+fn is_listing(file: SourceFile, it: InFile<'_>) -> bool {
+    file.detected(it.db) == Detected::Stx || symlist::is_table(Path::new(file.path(it.db)))
 }
 
 /// Whether names of a unit are those of its program: a DFB sees its own alone (PL7:5350-5450).
 fn sees_symbols(it: InFile<'_>, unit: Unit<'_>) -> bool {
-    !matches!(unit.entity(it.db), crate::model::entity::Entity::Dfb { .. })
+    !matches!(unit.entity(it.db), Entity::Dfb { .. })
 }
 
-/// Every place of a symbol: its declarations, and the words of code that name it.
+/// Every place of a symbol of PL7: its declarations, and the words of code that name it.
 fn symbol_places(it: InFile<'_>, program: Program<'_>, name: &SmolStr) -> Vec<FilePlace> {
     let mut found = Vec::new();
     for &unit in db::program_units(it.db, program).iter().filter(|&&unit| sees_symbols(it, unit)) {
         let model = db::model(it.db, unit);
         let symbols = model.symbols.iter().map(|it| model.place(it.anchor));
         let objects = model.accesses.iter().filter(|it| model.object(it.object).class == Class::Symbol);
-        let calls = model.calls.iter().filter(|it| matches!(it.callee, crate::model::unit::Callee::Instance(_)));
+        let calls = model.calls.iter().filter(|it| matches!(it.callee, Callee::Instance(_)));
         let mut ranges: Vec<TextRange> = symbols
             .chain(objects.map(|it| model.place(it.anchor)))
             .chain(calls.map(|it| model.place(it.anchor)))
@@ -137,8 +228,6 @@ fn symbol_places(it: InFile<'_>, program: Program<'_>, name: &SmolStr) -> Vec<Fi
         if ranges.is_empty() {
             continue;
         }
-        let file = unit.file(it.db);
-        let offset = db::layout(it.db, file).iter().find(|it| it.0 == unit).map_or(0, |it| it.1);
         let tree = db::tree(it.db, unit);
         let words = tree.syntax().descendant_tokens().filter(|it| it.kind() == SyntaxKind::Ident);
         let words = words.filter(|it| key(it.text()) == *name).map(|it| it.text_range());
@@ -150,23 +239,109 @@ fn symbol_places(it: InFile<'_>, program: Program<'_>, name: &SmolStr) -> Vec<Fi
                 reach = reach.max(range.end());
             }
             if word.end() <= reach {
-                found.push(FilePlace { file, range: word + TextSize::new(offset) });
+                found.push(place_in(it.db, unit, word));
             }
         }
     }
     found
 }
 
+/// A name of a unit by a new one. In a table, what stands behind it in its line stays where it is.
+fn in_unit(it: InFile<'_>, unit: Unit<'_>, range: TextRange, new: &str) -> Result<Change, String> {
+    let language = unit.language(it.db);
+    if !matches!(language, Language::SymbolTable | Language::Step5Symbols) {
+        return Ok((place_in(it.db, unit, range), new.to_owned()));
+    }
+    let text = unit.text(it.db);
+    let (old, behind) = text.get(usize::from(range.start())..).unwrap_or_default().split_at(usize::from(range.len()));
+    let line = behind.lines().next().unwrap_or_default();
+    let blanks = line.len() - line.trim_start_matches(' ').len();
+    let no_room = || format!("the table `{}` has no room for `{new}`", unit.file(it.db).path(it.db));
+    if line.starts_with(',') && new.contains(',') {
+        return Err(no_room());
+    }
+    if line.is_empty() || line.starts_with(['"', ',', '\t']) {
+        return Ok((place_in(it.db, unit, range), new.to_owned()));
+    }
+    // Two blanks part fields of STEP 5.
+    let kept = if language == Language::Step5Symbols && line.len() > blanks { 2.min(blanks) } else { 0 };
+    let (had, has) = (old.chars().count(), new.chars().count());
+    if has > had + blanks - kept {
+        return Err(no_room());
+    }
+    let taken = TextSize::try_from(has.saturating_sub(had)).unwrap_or_default();
+    let range = TextRange::new(range.start(), range.end() + taken);
+    Ok((place_in(it.db, unit, range), format!("{new}{}", " ".repeat(had.saturating_sub(has)))))
+}
+
+/// Without the marks that code sets on a name.
+fn unmarked(name: &str) -> &str {
+    let quoted =
+        [('"', '"'), ('«', '»')].into_iter().find_map(|(open, close)| name.strip_prefix(open)?.strip_suffix(close));
+    quoted.unwrap_or(name.trim_start_matches(['#', '-', '='])).trim()
+}
+
+fn is_word(name: &str) -> bool {
+    name.starts_with(|it: char| it.is_alphabetic() || it == '_')
+        && name.chars().all(|it| it.is_alphanumeric() || it == '_')
+}
+
+fn fits(new: &str, limit: Option<Limit>, what: &str) -> Result<(), String> {
+    match limit.filter(|it| new.chars().count() > it.value as usize) {
+        Some(it) => Err(format!("`{new}` is too long: {what} has {} characters at most ({})", it.value, it.source)),
+        None => Ok(()),
+    }
+}
+
+/// Whether a name can be a symbol of Siemens.
+fn is_symbol(family: Family, new: &str) -> Result<(), String> {
+    let is_part = |it: char| match family {
+        Family::Step5 => it.is_alphanumeric() || matches!(it, '_' | '-' | '.' | '/'),
+        _ => !it.is_control() && !matches!(it, '"' | '«' | '»'),
+    };
+    let starts_well = family != Family::Step5 || new.starts_with(|it: char| it.is_alphabetic() || it == '_');
+    if new.is_empty() || !starts_well || !new.chars().all(is_part) {
+        return Err(format!("`{new}` is no symbol"));
+    }
+    fits(new, Target::any(family).symbol_length(), "a symbol")
+}
+
+/// Whether a name can be one that a block declares.
+fn is_field(family: Family, new: &str) -> Result<(), String> {
+    if !is_word(new) || is_reserved(new) {
+        return Err(format!("`{new}` is no name: it is a letter, followed by letters, digits and `_`"));
+    }
+    fits(new, Target::any(family).field_length(), "a name")
+}
+
+/// Whether a word ends a declaration, or starts another.
+fn is_reserved(word: &str) -> bool {
+    let word = word.to_ascii_uppercase();
+    let is_one = ["ARRAY", "BEGIN", "NETWORK", "OF", "STRING", "STRUCT", "TITLE", "VAR"].contains(&word.as_str());
+    is_one || word.starts_with("END_") || word.starts_with("VAR_") || Elementary::parse(&word).is_some()
+}
+
+/// Whether a name in place of another means what it should in code of a unit that sets no marks on it.
+fn is_bare(it: InFile<'_>, names: &Names<'_>, unit: Unit<'_>, old: &SmolStr, new: &str) -> Result<(), String> {
+    let code = format!("L {new}");
+    let parse = crate::syntax::parse(unit.language(it.db), &code);
+    let operand = parse.syntax().descendants().find(|it| it.kind() == SyntaxKind::Operand);
+    let is_one = operand.is_some_and(|it| it.tokens().all(|it| it.kind() == SyntaxKind::Ident && it.text() == new));
+    let is_known = || step7::parse_either(new).is_ok() || key(new) != *old && names.knows(unit, &key(new));
+    if !is_one || is_known() {
+        return Err(format!("`{new}` would mean something else where code names it without marks"));
+    }
+    Ok(())
+}
+
 fn is_free_symbol(it: InFile<'_>, program: Program<'_>, old: &SmolStr, new: &str) -> Result<(), String> {
-    let limit = pl7::SYMBOL_LENGTH;
     let is_word = |it: char| it.is_alphanumeric() || it == '_';
     if !new.starts_with(char::is_alphabetic) || !new.chars().all(is_word) {
         return Err(format!("`{new}` is no symbol: it is a letter, followed by letters, digits and `_`"));
     }
-    if new.chars().count() > limit.value as usize {
-        return Err(format!("`{new}` is too long: a symbol has {} characters at most ({})", limit.value, limit.source));
-    }
-    let is_taken = declaring(it, program).any(|facts| {
+    fits(new, Target::any(Family::Pl7).symbol_length(), "a symbol")?;
+    let is_taken = db::program_units(it.db, program).iter().any(|&unit| {
+        let facts = db::facts(it.db, unit);
         let used = facts.objects.iter().filter(|it| it.object.class == Class::Symbol).map(|it| it.object.text.as_str());
         let used = used.map(|it| it.split(['.', ':', '[']).next().unwrap_or(it));
         facts.symbols.iter().map(|it| it.name.as_str()).chain(used).any(|it| key(it) == key(new))

@@ -1,4 +1,4 @@
--- Neovim shows findings and hover, and applies a quick-fix. Run by tests/clients/run with editors/neovim/init.lua loaded and
+-- Neovim shows findings and hover, applies a quick-fix, and renames. Run by tests/clients/run with editors/neovim/init.lua loaded and
 -- the corpus file in the current buffer.
 
 local PATIENCE = 60000
@@ -98,6 +98,21 @@ local function main()
   -- In the text alone, not on the disk.
   vim.api.nvim_buf_set_lines(0, 3, 3, false, { '! %M500:=%M501 AND;' })
   wait('the findings of what was typed', function() return (shown() .. '\n'):find('X001 4\n') end)
+
+  -- A new name for a symbol goes into the symbol table, too, and is known before anything is saved.
+  vim.cmd('edit! convoyeur-s7/convoyeur.awl')
+  expected = checked()
+  wait('findings with a symbol table', function() return shown() == expected end)
+  put_cursor('"Forcage"')
+  vim.lsp.buf.rename('Cle de forcage')
+  wait('the new name', function() return vim.fn.search('"Cle de forcage"', 'nw') > 0 end)
+  check(vim.fn.search('"Forcage"', 'nw') == 0, 'the old name is left')
+  local symbols = vim.fn.getbufline(vim.fn.bufnr('convoyeur.sdf'), 1, '$')
+  check(table.concat(symbols, '\n'):find('"Cle de forcage"', 1, true), 'the table has the new name')
+  vim.fn.append(0, 'x')
+  wait('the findings of the next edit', function() return (shown() .. '\n'):find('X001 1\n') end)
+  vim.cmd('1delete')
+  wait('the findings of the renamed program', function() return shown() == expected end)
 
   vim.lsp.stop_client(vim.lsp.get_active_clients())
   wait('the end of the server', function() return #vim.lsp.get_active_clients() == 0 end)
