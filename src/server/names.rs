@@ -2,7 +2,7 @@
 //! a block, wherever the word stands: in code, in a call, behind a point, in the initial values of a data block.
 
 use rowan::{TextRange, TextSize};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::cursor::{InUnit, What, key_in_code};
@@ -148,6 +148,7 @@ impl<'s> Names<'s> {
         each_field(model.fields(), &mut |it| {
             own.insert(model.place(it.anchor).start(), it.anchor);
         });
+        let jumps: FxHashSet<TextSize> = model.jumps.iter().map(|it| it.range.start()).collect();
         for node in root.descendants() {
             match node.kind() {
                 SyntaxKind::VarName => {
@@ -159,7 +160,10 @@ impl<'s> Names<'s> {
                         marked: true,
                     }));
                 }
-                SyntaxKind::Operand => self.path(unit, node, name, &mut found),
+                // A label may have the name of a variable.
+                SyntaxKind::Operand if !jumps.contains(&node.text_range().start()) => {
+                    self.path(unit, node, name, &mut found);
+                }
                 _ => {}
             }
         }

@@ -14,7 +14,7 @@ use crate::model::layout::Elementary;
 use crate::model::object::{Class, step7};
 use crate::model::symbols::key;
 use crate::model::unit::Callee;
-use crate::server::cursor::{InUnit, What};
+use crate::server::cursor::{InUnit, What, key_in_code};
 use crate::server::edits::Edits;
 use crate::server::names::{self, Declared, Names, place_in};
 use crate::server::snapshot::{InFile, Snapshot};
@@ -58,6 +58,7 @@ enum Kind<'s> {
         family: Family,
         programs: Vec<Program<'s>>,
         name: SmolStr,
+        declared_in: Vec<SourceFile>,
     },
     /// A parameter, variable or component that a block declares.
     Field {
@@ -116,7 +117,12 @@ pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
             let name = key(cursor.text(word.range));
             let kind = match word.declared {
                 Declared::Symbol(name) => symbol(it, program, name)?,
-                Declared::Field(unit, anchor) => Kind::Field { unit, anchor, name },
+                Declared::Field(unit, anchor) => {
+                    // What a function returns has a name of its own.
+                    let declared = place_in(it.db, unit, db::model(it.db, unit).place(anchor));
+                    let text = unit.file(it.db).text(it.db).get(std::ops::Range::<usize>::from(declared.range))?;
+                    (key_in_code(text.trim_start_matches('#')) == name).then_some(Kind::Field { unit, anchor, name })?
+                }
             };
             (word.range, kind)
         }
@@ -128,34 +134,37 @@ pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
 /// A symbol that a program declares, with all programs that see the same declaration.
 fn symbol<'s>(it: InFile<'s>, program: Program<'s>, name: SmolStr) -> Option<Kind<'s>> {
     let mut programs = vec![program];
-    let mut is_declared = false;
+    let mut declared_in = Vec::new();
     for &unit in db::program_units(it.db, program) {
         let is_block = matches!(unit.entity(it.db).name(), Some(BlockName::Symbol(of)) if *of == name);
         if is_block || db::facts(it.db, unit).symbols.iter().any(|it| key(&it.name) == name) {
-            is_declared = true;
+            declared_in.push(unit.file(it.db));
             programs.extend(db::programs_with(it.db, unit.file(it.db)));
         }
     }
     let family = program.family(it.db);
     let mut seen = FxHashSet::default();
     programs.retain(|it_| it_.family(it.db) == family && seen.insert(*it_));
-    is_declared.then_some(Kind::Symbol { family, programs, name })
+    (!declared_in.is_empty()).then_some(Kind::Symbol { family, programs, name, declared_in })
 }
 
 impl<'s> Renamed<'s> {
     /// All that changes with the name, or why it cannot be the new one.
     fn changes(&self, it: InFile<'s>, new: &str) -> Result<Vec<Change>, String> {
+        if let Kind::Symbol { declared_in, .. } = &self.kind {
+            declared_in.iter().try_for_each(|&file| is_text(it, file))?;
+        }
         let changes: Vec<Change> = match &self.kind {
             Kind::Label { places, language, others } => {
                 let new = label(new, *language, others)?;
                 places.iter().map(|place| (*place, new.clone())).collect()
             }
-            Kind::Symbol { family: Family::Pl7, programs, name } => {
+            Kind::Symbol { family: Family::Pl7, programs, name, .. } => {
                 programs.iter().try_for_each(|&program| is_free_symbol(it, program, name, new))?;
                 let places = programs.iter().flat_map(|&program| symbol_places(it, program, name));
                 places.map(|place| (place, new.to_owned())).collect()
             }
-            Kind::Symbol { family, programs, name } => {
+            Kind::Symbol { family, programs, name, .. } => {
                 let new = unmarked(new);
                 is_symbol(*family, new)?;
                 let mut changes = Vec::new();
@@ -195,16 +204,18 @@ impl<'s> Renamed<'s> {
                 changes
             }
         };
-        match changes.iter().find(|change| is_listing(change.0.file, it)) {
-            Some((place, _)) => Err(format!("`{}` declares it, and is no text", place.file.path(it.db))),
-            None => Ok(changes),
-        }
+        changes.iter().try_for_each(|change| is_text(it, change.0.file))?;
+        Ok(changes)
     }
 }
 
-/// Whether what is shown as the text of a file was made of its tables.
-fn is_listing(file: SourceFile, it: InFile<'_>) -> bool {
-    file.detected(it.db) == Detected::Stx || symlist::is_table(Path::new(file.path(it.db)))
+/// Whether a file is the text that is shown of it, and no listing of its tables.
+fn is_text(it: InFile<'_>, file: SourceFile) -> Result<(), String> {
+    let path = file.path(it.db);
+    if file.detected(it.db) == Detected::Stx || symlist::is_table(Path::new(path)) {
+        return Err(format!("`{path}` has the name, too, and is no text"));
+    }
+    Ok(())
 }
 
 /// Whether names of a unit are those of its program: a DFB sees its own alone (PL7:5350-5450).
