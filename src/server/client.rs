@@ -27,6 +27,8 @@ pub(super) struct Abilities {
     pub(super) watches_files: bool,
     pub(super) document_changes: bool,
     pub(super) creates_files: bool,
+    /// Lets the user fill in what an edit leaves open.
+    pub(super) snippets: bool,
     pub(super) refreshes_diagnostics: bool,
     pub(super) refreshes_lenses: bool,
     pub(super) refreshes_hints: bool,
@@ -66,6 +68,7 @@ impl Abilities {
             creates_files: edit
                 .and_then(|it| it.resource_operations.as_ref())
                 .is_some_and(|it| it.contains(&ResourceOperationKind::Create)),
+            snippets: edit.is_some_and(|it| it.snippet_edit_support == Some(true) && it.document_changes == Some(true)),
             refreshes_diagnostics: workspace
                 .and_then(|it| it.diagnostics.as_ref())
                 .is_some_and(|it| it.refresh_support == Some(true)),

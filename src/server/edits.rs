@@ -14,12 +14,13 @@ use crate::lint::Fix;
 /// Edits by path, in the form that the client knows: with versions, so that it does not apply what is stale, else without.
 #[derive(Default)]
 pub(super) struct Edits {
-    files: Vec<(String, Vec<TextEdit>)>,
+    files: Vec<(String, Vec<Edit>)>,
     create: Vec<Uri>,
 }
 
 impl Edits {
-    pub(super) fn add(&mut self, path: &str, edit: TextEdit) {
+    pub(super) fn add(&mut self, path: &str, edit: impl Into<Edit>) {
+        let edit = edit.into();
         match self.files.iter_mut().find(|it| it.0 == path) {
             Some(file) => file.1.push(edit),
             None => self.files.push((path.to_owned(), vec![edit])),
@@ -47,7 +48,12 @@ impl Edits {
     pub(super) fn finish(self, snapshot: &Snapshot) -> WorkspaceEdit {
         let files = self.files.into_iter().filter_map(|(path, edits)| Some((snapshot.uri(&path)?, path, edits)));
         if !snapshot.abilities.document_changes {
-            let changes: HashMap<Uri, Vec<TextEdit>> = files.map(|it| (it.0, it.2)).collect();
+            let plain = |it: Edit| match it {
+                Edit::TextEdit(it) => Some(it),
+                Edit::AnnotatedTextEdit(_) | Edit::SnippetTextEdit(_) => None,
+            };
+            let changes: HashMap<Uri, Vec<TextEdit>> =
+                files.map(|it| (it.0, it.2.into_iter().filter_map(plain).collect())).collect();
             return WorkspaceEdit { changes: Some(changes), ..Default::default() };
         }
         let create = self
@@ -60,7 +66,7 @@ impl Edits {
                     version: snapshot.version(&path),
                     text_document_identifier: TextDocumentIdentifier { uri },
                 },
-                edits: edits.into_iter().map(Edit::TextEdit).collect(),
+                edits,
             })
         });
         WorkspaceEdit { document_changes: Some(create.chain(edits).collect()), ..Default::default() }

@@ -649,6 +649,21 @@ fn a_comment_that_suppresses_stands_above_the_line() {
     client.open("a.awl", &new);
     client.wait(|it| it.pushed("a.awl").is_empty());
     client.stop();
+    // A client that can lets the user write why.
+    let mut able = able();
+    able["workspace"]["workspaceEdit"]["snippetEditSupport"] = json!(true);
+    let mut client = Client::start(able, &[("a.awl", text)]);
+    client.wait(|it| it.pushed("a.awl").iter().any(|it| it.starts_with("R004 5:")));
+    let found = actions(&mut client, "a.awl", 5, Some(json!(["quickfix"])));
+    let action = found.iter().find(|it| it["title"].as_str().unwrap().starts_with("Suppress R004")).unwrap();
+    let edit = &action["edit"]["documentChanges"][0]["edits"][0];
+    let snippet = edit["snippet"]["value"].as_str().unwrap();
+    assert_eq!(snippet, "      // plclint: allow(dead-load: ${1:reason})\n");
+    assert_eq!((&edit["snippet"]["kind"], range(&edit["range"]).as_str()), (&json!("snippet"), "5:1-5:1"));
+    let comment = snippet.replace("${1:reason}", "seen by the panel");
+    client.open("a.awl", &text.replacen("      L     MW 6;", &format!("{comment}      L     MW 6;"), 1));
+    client.wait(|it| it.pushed("a.awl").is_empty());
+    client.stop();
 }
 
 /// Every request at many places of every program of the corpus: none fails.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use lsp_types::{
-    CodeAction, CodeActionKind, CodeActionParams, CodeActionRequest, CodeActionResponse, Position, Range, TextEdit,
+    CodeAction, CodeActionKind, CodeActionParams, CodeActionRequest, CodeActionResponse, Edit, Position, Range,
+    SnippetTextEdit, StringValue, TextEdit,
 };
 use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -129,7 +130,7 @@ fn suppress(it: &InFile<'_>, finding: &FileFinding, above: &Above) -> Vec<CodeAc
     let rule = finding.finding.rule;
     let action = |verb: &str, where_: &str| {
         let mut edits = Edits::default();
-        edits.add(it.path(), above.comment(it, &format!("plclint: {verb}({})", rule.name)));
+        edits.add(it.path(), above.comment(it, verb, rule));
         let title = format!("Suppress {} ({}) {where_} with a comment", rule.code, rule.name);
         quick_fix(it, finding, title, edits)
     };
@@ -184,8 +185,14 @@ impl Above {
         }
     }
 
-    fn comment(&self, it: &InFile<'_>, text: &str) -> TextEdit {
-        TextEdit { range: it.range(TextRange::empty(self.at)), new_text: self.line(text) }
+    /// With a reason that the user writes next, where the client leaves room for it.
+    fn comment(&self, it: &InFile<'_>, verb: &str, rule: &Rule) -> Edit {
+        let (range, name) = (it.range(TextRange::empty(self.at)), rule.name);
+        if it.snapshot.abilities.snippets {
+            let value = self.line(&format!("plclint: {verb}({name}: ${{1:reason}})"));
+            return SnippetTextEdit { range, snippet: StringValue { value }, annotation_id: None }.into();
+        }
+        TextEdit { range, new_text: self.line(&format!("plclint: {verb}({name})")) }.into()
     }
 }
 
