@@ -115,8 +115,16 @@ impl SymbolTable {
 
     /// The symbol of an address as written, in the form in which items of an object inherit it.
     pub fn symbol(&self, address: &str) -> Option<SmolStr> {
-        let address = self.spelling(address);
-        if let Some(name) = self.names.get(address.as_str()) {
+        self.symbol_of(&self.spelling(address)).or_else(|| {
+            // Code of Siemens has blanks in its addresses.
+            let is_spaced = matches!(self.family, Family::Step7 | Family::Step5) && !address.contains(['"', '«', '-']);
+            let bare = is_spaced.then(|| address.split_whitespace().collect::<String>())?;
+            self.symbol_of(&self.spelling(&bare))
+        })
+    }
+
+    fn symbol_of(&self, address: &str) -> Option<SmolStr> {
+        if let Some(name) = self.names.get(address) {
             return Some(name.clone());
         }
         let base = address.rfind([':', '.', ','])?;

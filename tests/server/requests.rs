@@ -564,6 +564,28 @@ fn hints_show_the_other_name() {
     let first = json!({ "start": { "line": 1, "character": 0 }, "end": { "line": 2, "character": 0 } });
     assert_eq!(hints(&first), expected[..2]);
     client.stop();
+    // Code of Siemens has blanks in its addresses.
+    let files = [
+        (
+            "a.awl",
+            "FUNCTION FC 1 : VOID\nBEGIN\n      U     E 1.0;\n      =     \"Lamp\";\n      =     A 4.1;\nEND_FUNCTION\n",
+        ),
+        ("a.sdf", "\"Lamp\",\"A 4.0\",\"BOOL\",\"\"\n\"Horn\",\"A       4.1\",\"BOOL\",\"\"\n"),
+        ("b.s5", "PB 1\n:U E 1.0\n:= -LAMPE\n:= A 4.1\n:BE\n"),
+        ("BZ0.SEQ", "\tE 1.0\tTASTER\t\n\tA 4.0\tLAMPE\t\n"),
+    ];
+    let mut client = Client::start(able(), &files);
+    let mut hints = |path: &str| -> Vec<String> {
+        let all = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } });
+        let answer =
+            client.ask("textDocument/inlayHint", json!({ "textDocument": client.document(path), "range": all }));
+        let one =
+            |it: &Value| format!("{} {}", it["position"]["line"].as_u64().unwrap() + 1, it["label"].as_str().unwrap());
+        answer.as_array().unwrap().iter().map(one).collect()
+    };
+    assert_eq!(hints("a.awl"), ["4 A4.0", "5 \"Horn\""]);
+    assert_eq!(hints("b.s5"), ["2 TASTER", "3 A4.0"]);
+    client.stop();
 }
 
 #[test]
