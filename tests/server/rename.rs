@@ -220,6 +220,14 @@ fn variants_share_what_a_table_declares() {
         assert_eq!(edited(&client, &edit, path, text), text.replace("Pump", "Valve"), "{path}");
     }
     client.stop();
+    let old = "LD : PL7-2 - POST\nRUNG L1:\nOPEN_CONTACT(Start),H_LINK(8),COIL(Pump);\nEND_RUNG\n";
+    let variables = variables.replace("Pump AT %Q2.0 : EBOOL;", "Pump AT O2,0 : BOOL; Start AT I1,0 : BOOL;");
+    let mut client = Client::start(able(), &[("old.ld", old), ("old.scy", &variables)]);
+    let edit = rename(&mut client, "old.ld", old, ("Pump", 1), "Valve").unwrap();
+    assert_eq!(edited(&client, &edit, "old.ld", old), old.replace("Pump", "Valve"));
+    assert_eq!(edited(&client, &edit, "old.scy", &variables), variables.replace("Pump", "Valve"));
+    assert_eq!(rename(&mut client, "old.ld", old, ("Pump", 1), "start"), Err(-32803));
+    client.stop();
 }
 
 /// Whatever is renamed, the program is the same: the same rules find the same lines.

@@ -102,7 +102,7 @@ pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
     }
     let program = cursor.program()?.0;
     let (range, kind) = match program.family(it.db) {
-        Family::Pl7 => {
+        Family::Pl7 | Family::Pl72 => {
             let token = cursor.token().filter(|it| it.kind() == SyntaxKind::Ident)?;
             let is_symbol = match target?.what {
                 What::Symbol(_) => true,
@@ -126,7 +126,6 @@ pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
             };
             (word.range, kind)
         }
-        Family::Pl72 => return None,
     };
     Some(Renamed { range: cursor.in_file(range), text: cursor.text(range).to_owned(), kind })
 }
@@ -159,7 +158,7 @@ impl<'s> Renamed<'s> {
                 let new = label(new, *language, others)?;
                 places.iter().map(|place| (*place, new.clone())).collect()
             }
-            Kind::Symbol { family: Family::Pl7, programs, name, .. } => {
+            Kind::Symbol { family: Family::Pl7 | Family::Pl72, programs, name, .. } => {
                 programs.iter().try_for_each(|&program| is_free_symbol(it, program, name, new))?;
                 let places = programs.iter().flat_map(|&program| symbol_places(it, program, name));
                 places.map(|place| (place, new.to_owned())).collect()
@@ -223,7 +222,7 @@ fn sees_symbols(it: InFile<'_>, unit: Unit<'_>) -> bool {
     !matches!(unit.entity(it.db), Entity::Dfb { .. })
 }
 
-/// Every place of a symbol of PL7: its declarations, and the words of code that name it.
+/// Every place of a symbol of PL7 or PL7-2: its declarations, and the words of code that name it.
 fn symbol_places(it: InFile<'_>, program: Program<'_>, name: &SmolStr) -> Vec<FilePlace> {
     let mut found = Vec::new();
     for &unit in db::program_units(it.db, program).iter().filter(|&&unit| sees_symbols(it, unit)) {
@@ -350,7 +349,7 @@ fn is_free_symbol(it: InFile<'_>, program: Program<'_>, old: &SmolStr, new: &str
     if !new.starts_with(char::is_alphabetic) || !new.chars().all(is_word) {
         return Err(format!("`{new}` is no symbol: it is a letter, followed by letters, digits and `_`"));
     }
-    fits(new, Target::any(Family::Pl7).symbol_length(), "a symbol")?;
+    fits(new, Target::any(program.family(it.db)).symbol_length(), "a symbol")?;
     let is_taken = db::program_units(it.db, program).iter().any(|&unit| {
         let facts = db::facts(it.db, unit);
         let used = facts.objects.iter().filter(|it| it.object.class == Class::Symbol).map(|it| it.object.text.as_str());
