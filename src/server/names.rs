@@ -1,5 +1,6 @@
-//! Which declaration a word of a Siemens program goes by: a symbol of its tables, or a parameter, variable or component of
-//! a block, wherever the word stands: in code, in a call, behind a point, in the initial values of a data block.
+//! Which declaration a word of a program goes by: a symbol of its tables and variables, or a parameter, variable or
+//! component of a block or of a DFB, wherever the word stands: in code, in a call, behind a point, in the initial values of
+//! a data block.
 
 use rowan::{TextRange, TextSize};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -9,7 +10,7 @@ use super::cursor::{InUnit, What, key_in_code};
 use crate::analysis::symbols::SymbolTable;
 use crate::db::{self, FilePlace, Program, RootDatabase, Unit};
 use crate::model::UnitModel;
-use crate::model::entity::BlockName;
+use crate::model::entity::{BlockName, Entity};
 use crate::model::layout::{DataType, Field};
 use crate::model::object::{Area, Class, step7};
 use crate::model::symbols::key;
@@ -42,6 +43,10 @@ pub(super) struct Names<'s> {
     table: &'s SymbolTable,
     /// Blocks by number where it is known.
     blocks: FxHashMap<BlockName, Unit<'s>>,
+    /// Types of DFBs.
+    dfbs: FxHashMap<SmolStr, Unit<'s>>,
+    /// The types of what has a symbol and no address, by the symbol.
+    instances: FxHashMap<SmolStr, SmolStr>,
 }
 
 /// Fields with the unit that declares them.
@@ -55,10 +60,6 @@ const MARKS: [char; 8] = ['#', '-', '"', '«', '»', ' ', '\u{a0}', '\u{202f}'];
 
 /// The word at a place.
 pub(super) fn word_at<'s>(cursor: &InUnit<'s>) -> Option<Word<'s>> {
-    let language = cursor.unit.language(cursor.it.db);
-    if !language.is_statement_list() && !matches!(language, Language::SymbolTable | Language::Step5Symbols) {
-        return None;
-    }
     let name = key_of(cursor.token()?);
     let names = Names::new(cursor.it.db, cursor.program()?.0);
     names.words(cursor.unit, &name).into_iter().find(|it| {
@@ -79,8 +80,14 @@ pub(super) fn declaration_at(cursor: &InUnit<'_>) -> Option<FilePlace> {
             let range = cursor.target().filter(|it| matches!(it.what, What::Object(_)))?.range;
             let behind = cursor.text(TextRange::new(word.range.end(), range.end().max(word.range.end())));
             let is_part = behind.trim_start_matches(MARKS).starts_with('.');
-            let block = Names::new(db, cursor.program()?.0).block(&BlockName::Symbol(name)).filter(|_| is_part)?;
-            Some(place_in(db, block, db::model(db, block).heading()))
+            if !is_part {
+                return None;
+            }
+            let names = Names::new(db, cursor.program()?.0);
+            match names.block(&BlockName::Symbol(name.clone())) {
+                Some(block) => Some(place_in(db, block, db::model(db, block).heading())),
+                None => names.declaration(&name).map(|(unit, range)| place_in(db, unit, range)),
+            }
         }
     }
 }
@@ -95,23 +102,48 @@ pub(super) fn place_in(db: &RootDatabase, unit: Unit<'_>, range: TextRange) -> F
 impl<'s> Names<'s> {
     pub(super) fn new(db: &'s RootDatabase, program: Program<'s>) -> Self {
         let (units, table) = (db::program_units(db, program), &**db::symbol_table(db, program));
-        let named = units.iter().filter_map(|&unit| {
-            let name = unit.entity(db).name()?;
-            Some((table.block(name).unwrap_or_else(|| name.clone()), unit))
-        });
-        Self { db, units, table, blocks: named.collect() }
+        let mut it = Self {
+            db,
+            units,
+            table,
+            blocks: FxHashMap::default(),
+            dfbs: FxHashMap::default(),
+            instances: FxHashMap::default(),
+        };
+        for &unit in units {
+            match unit.entity(db) {
+                Entity::Dfb { name } => {
+                    it.dfbs.insert(key(name), unit);
+                }
+                entity => {
+                    let number = |name: &BlockName| table.block(name).unwrap_or_else(|| name.clone());
+                    it.blocks.extend(entity.name().map(|name| (number(name), unit)));
+                }
+            }
+            if unit.language(db).declares_symbols() {
+                let instances = db::facts(db, unit).symbols.iter().filter(|it| it.object.is_none());
+                it.instances.extend(instances.map(|it| (key(&it.name), key(&it.ty))));
+            }
+        }
+        it
     }
 
-    /// Whether the program says what a symbol is: in a table, or by a block of that name.
-    pub(super) fn declares(&self, symbol: &SmolStr) -> bool {
-        let is_it = |unit: &Unit<'s>| match unit.entity(self.db).name() {
-            Some(BlockName::Symbol(name)) if name == symbol => true,
-            _ => {
-                let declares = unit.language(self.db).declares_symbols();
-                declares && self.model(*unit).symbols.iter().any(|it| key(&it.name) == *symbol)
-            }
+    /// Where the tables and variables of the program declare a symbol.
+    fn declaration(&self, symbol: &SmolStr) -> Option<(Unit<'s>, TextRange)> {
+        self.units.iter().filter(|it| it.language(self.db).declares_symbols()).find_map(|&unit| {
+            let model = self.model(unit);
+            let found = model.symbols.iter().find(|it| key(&it.name) == *symbol)?;
+            Some((unit, model.place(found.anchor)))
+        })
+    }
+
+    /// Whether the program declares a symbol, or uses one that nothing declares.
+    pub(super) fn has_symbol(&self, symbol: &SmolStr) -> bool {
+        let declared = Declared::Symbol(symbol.clone());
+        let uses = |unit: &Unit<'s>| {
+            may_name(unit.text(self.db), symbol) && self.words(*unit, symbol).iter().any(|it| it.declared == declared)
         };
-        self.units.iter().any(is_it)
+        self.declaration(symbol).is_some() || self.units.iter().any(uses)
     }
 
     /// Whether a word that a unit writes without marks has a meaning.
@@ -130,7 +162,7 @@ impl<'s> Names<'s> {
         found
     }
 
-    /// The words of a unit that are a name, in lower case, and that something declares, in order.
+    /// The words of a unit that are a name, in lower case, and that something declares.
     pub(super) fn words(&self, unit: Unit<'s>, name: &SmolStr) -> Vec<Word<'s>> {
         let (model, root) = (self.model(unit), db::tree(self.db, unit).syntax());
         let mut found = Vec::new();
@@ -141,6 +173,10 @@ impl<'s> Names<'s> {
                 declared: Declared::Symbol(name.clone()),
                 marked: true,
             }));
+            return found;
+        }
+        if !unit.language(self.db).is_statement_list() {
+            self.words_of_pl7(unit, name, &mut found);
             return found;
         }
         self.symbols(model, root, name, &mut found);
@@ -173,6 +209,62 @@ impl<'s> Names<'s> {
         found.sort_by_key(|it| it.range.start());
         found.dedup_by_key(|it| it.range);
         found
+    }
+
+    fn words_of_pl7(&self, unit: Unit<'s>, name: &SmolStr, found: &mut Vec<Word<'s>>) {
+        let (model, root) = (self.model(unit), db::tree(self.db, unit).syntax());
+        let is_dfb = matches!(unit.entity(self.db), Entity::Dfb { .. });
+        let item = |unit: Unit<'s>| {
+            let items = self.model(unit).interface.iter().flat_map(|it| &it.items);
+            let item = items.into_iter().find(|it| key(&it.name) == *name)?;
+            Some(Declared::Field(unit, item.anchor))
+        };
+        let own = item(unit).filter(|_| is_dfb);
+        let mut push = |token: SyntaxToken<'_>, declared: Option<Declared<'s>>| {
+            found.extend(declared.map(|declared| Word { range: token.text_range(), declared, marked: true }));
+        };
+        for node in root.descendants().filter(|it| matches!(it.kind(), SyntaxKind::NameRef | SyntaxKind::VarName)) {
+            let mut tokens = node.tokens().filter(|it| !it.kind().is_trivia());
+            let Some(first) = tokens.next() else { continue };
+            if own.is_some() && key(first.text()) == *name {
+                push(first, own.clone());
+            }
+            let point = tokens.next().filter(|it| it.kind() == SyntaxKind::Dot);
+            let behind = point.and(tokens.next()).filter(|it| key(it.text()) == *name);
+            if let Some(behind) = behind.filter(|_| !is_dfb) {
+                let ty = self.instances.get(&key(first.text()));
+                push(behind, ty.and_then(|it| self.dfbs.get(it)).and_then(|it| item(*it)));
+            }
+        }
+        // A DFB sees its own names alone (PL7:5350-5450).
+        if is_dfb {
+            return;
+        }
+        let symbols = model.symbols.iter().map(|it| model.place(it.anchor));
+        let objects = model.accesses.iter().filter(|it| model.object(it.object).class == Class::Symbol);
+        let calls = model.calls.iter().filter(|it| matches!(it.callee, Callee::Instance(_)));
+        let mut ranges: Vec<TextRange> = symbols
+            .chain(objects.map(|it| model.place(it.anchor)))
+            .chain(calls.map(|it| model.place(it.anchor)))
+            .collect();
+        ranges.sort_unstable_by_key(|it| (it.start(), it.end()));
+        // Ranges may hold one another: of those that start before the word, the longest decides.
+        let mut reach = TextSize::new(0);
+        let mut next = ranges.iter().peekable();
+        let mut last = None;
+        for token in root.descendant_tokens().filter(|it| !it.kind().is_trivia()) {
+            let range = token.text_range();
+            let is_behind_point = last.replace(token.kind()) == Some(SyntaxKind::Dot);
+            if is_behind_point || token.kind() != SyntaxKind::Ident || key(token.text()) != *name {
+                continue;
+            }
+            while let Some(range) = next.next_if(|it| it.start() <= token.text_range().start()) {
+                reach = reach.max(range.end());
+            }
+            if range.end() <= reach {
+                push(token, Some(Declared::Symbol(name.clone())));
+            }
+        }
     }
 
     /// Symbols in marks, and those without that the model takes for symbols.
@@ -296,8 +388,16 @@ impl<'s> Names<'s> {
     }
 }
 
+/// The names of what stands beside a field or an item of a DFB, in lower case.
+pub(super) fn beside(db: &RootDatabase, unit: Unit<'_>, anchor: u32) -> Vec<SmolStr> {
+    let model = db::model(db, unit);
+    let items = model.interface.iter().flat_map(|it| &it.items).map(|it| (key(&it.name), it.anchor));
+    let fields = siblings(model.fields(), anchor).unwrap_or_default().iter().map(|it| (it.name.clone(), it.anchor));
+    items.chain(fields).filter(|it| it.1 != anchor).map(|it| it.0).collect()
+}
+
 /// The fields that stand beside one, it among them.
-pub(super) fn siblings(fields: &[Field], anchor: u32) -> Option<&[Field]> {
+fn siblings(fields: &[Field], anchor: u32) -> Option<&[Field]> {
     if fields.iter().any(|it| it.anchor == anchor) {
         return Some(fields);
     }

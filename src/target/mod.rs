@@ -517,10 +517,11 @@ impl Target {
         }
     }
 
-    /// Longest name of a parameter or variable that a block declares, in characters; `None` where they are symbols.
+    /// Longest name of a parameter or variable that a block or a DFB declares, in characters.
     pub const fn field_length(&self) -> Option<Limit> {
         match self.family {
-            Family::Pl7 | Family::Pl72 => None,
+            Family::Pl7 => Some(pl7::DFB_ITEM_NAME_LENGTH),
+            Family::Pl72 => None,
             Family::Step5 => Some(step5::FORMAL_LENGTH),
             Family::Step7 => Some(step7::SYMBOL_LENGTH),
         }

@@ -1,6 +1,6 @@
 //! Another name for what a program of Siemens declares.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::PathBuf;
 
@@ -165,6 +165,80 @@ fn what_blocks_declare_is_renamed_wherever_it_is_named() {
     client.stop();
 }
 
+const DFB: &str = "[HEADER]
+STANDARD = 'IEC 1131-3'
+[SOURCE_UNIT]
+SU_TYPE = DFB
+NAME = 'Moteur'
+LANGUAGE = ST
+BODY =
+FUNCTION_BLOCK Moteur
+VAR_INPUT
+    Cde : BOOL;
+END_VAR
+VAR_OUTPUT
+    Sortie : BOOL;
+END_VAR
+VAR_PUBLIC
+    Nb : WORD;
+END_VAR
+(*PHRASE*)
+IF Cde THEN INC Nb; END_IF;
+Sortie := cde;
+(*END_PHRASE*)
+END_FUNCTION_BLOCK
+[EOF]
+";
+
+#[test]
+fn what_a_dfb_declares_is_renamed_in_it_and_behind_its_instances() {
+    let variables = "[HEADER]\nSTANDARD = 'IEC 1131-3'\n[DATA_UNIT]\nVAR_GLOBAL\n    Pompe : Moteur;\n    \
+                     Sortie AT %Q2.0 : EBOOL;\n    Nb AT %MW1 : WORD;\nEND_VAR\n[EOF]\n";
+    let st = "ST : MAST - MAIN\n! Pompe(%I1.0);\n! Sortie := Pompe.Sortie;\n! Nb := Pompe.nb + %MW5[Pompe.Nb];\n";
+    let ladder = "LD : MAST - SR1\nRUNG\nOPEN_CONTACT(Pompe.Sortie),H_LINK(9),COIL(%M1);\nEND_RUNG\n";
+    let files = [("a.st", st), ("b.ld", ladder), ("moteur.dfb", DFB), ("v.scy", variables)];
+    let mut client = Client::start(able(), &files);
+    let mut after = |path, text, place, new| -> Vec<String> {
+        let edit = rename(&mut client, path, text, place, new).unwrap();
+        files.iter().map(|it| edited(&client, &edit, it.0, it.1)).collect()
+    };
+    let nb = [
+        st.replace("Pompe.nb", "Pompe.Total").replace("Pompe.Nb", "Pompe.Total"),
+        ladder.into(),
+        DFB.replace("Nb", "Total"),
+        variables.into(),
+    ];
+    assert_eq!(after("moteur.dfb", DFB, ("Nb : WORD", 1), "Total"), nb);
+    assert_eq!(after("a.st", st, ("Pompe.nb", 7), "Total"), nb);
+    let output = [
+        st.replace("Pompe.Sortie", "Pompe.Q"),
+        ladder.replace("Pompe.Sortie", "Pompe.Q"),
+        DFB.replace("Sortie", "Q"),
+        variables.into(),
+    ];
+    assert_eq!(after("b.ld", ladder, ("Pompe.Sortie", 8), "Q"), output);
+    // The symbol of that name is another thing.
+    let symbol = [st.replace("! Sortie", "! Vanne"), ladder.into(), DFB.into(), variables.replace("Sortie", "Vanne")];
+    assert_eq!(after("a.st", st, ("! Sortie", 3), "Vanne"), symbol);
+    let input = [st.into(), ladder.into(), DFB.replace("Cde", "Ordre").replace("cde", "Ordre"), variables.into()];
+    assert_eq!(after("moteur.dfb", DFB, ("IF Cde", 4), "Ordre"), input);
+    for wrong in ["Nb", "nb", "Pompe", "Trop_long", "é", "_a", "a b", "AND", ""] {
+        let refused = rename(&mut client, "moteur.dfb", DFB, ("IF Cde", 4), wrong);
+        assert_eq!(refused, Err(-32803), "{wrong}");
+    }
+    for wrong in ["AND", "Pompe", "_a", "a_"] {
+        assert_eq!(rename(&mut client, "a.st", st, ("! Sortie", 3), wrong), Err(-32803), "{wrong}");
+    }
+    let mut find = |needle: &str, within: usize| {
+        let params = at(&client, "a.st", st, needle, within);
+        let answer = client.ask("textDocument/definition", params);
+        locations(&client, &answer)
+    };
+    assert_eq!(find("Pompe.Sortie", 7), ["moteur.dfb:13:5-13:11"]);
+    assert_eq!(find("Pompe.Sortie", 2), ["v.scy:5:5-5:10"], "the instance before its output");
+    client.stop();
+}
+
 #[test]
 fn columns_of_a_table_stay_where_they_are() {
     let code = "FUNCTION FC 1 : VOID\nBEGIN\n      U     \"Lamp\";\n      =     \"Horn\";\nEND_FUNCTION\n";
@@ -252,7 +326,14 @@ fn a_program_with_another_name_in_it_is_the_same() {
             let is_start = |(at, it): &(usize, char)| {
                 it.is_alphabetic() && !text[..*at].ends_with(|it: char| it.is_alphanumeric() || it == '_')
             };
+            let mut asked: BTreeMap<&str, usize> = BTreeMap::new();
             for (offset, _) in text.char_indices().filter(is_start) {
+                let word = text[offset..].split(|it: char| !it.is_alphanumeric() && it != '_').next().unwrap();
+                let count = asked.entry(word).or_default();
+                *count += 1;
+                if *count > 4 {
+                    continue;
+                }
                 let before_it = &text[..offset];
                 let line_start = before_it.rfind('\n').map_or(0, |it| it + 1);
                 let position = json!({ "line": before_it.matches('\n').count(), "character": offset - line_start });

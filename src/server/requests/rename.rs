@@ -9,18 +9,17 @@ use smol_str::SmolStr;
 
 use super::{Answer, Fault, Handle};
 use crate::db::{self, FilePlace, Program, SourceFile, Unit};
-use crate::model::entity::{BlockName, Entity, Family};
+use crate::model::entity::{BlockName, Family};
 use crate::model::layout::Elementary;
-use crate::model::object::{Class, step7};
+use crate::model::object::step7;
 use crate::model::symbols::key;
-use crate::model::unit::Callee;
 use crate::server::cursor::{InUnit, What, key_in_code};
 use crate::server::edits::Edits;
 use crate::server::names::{self, Declared, Names, place_in};
 use crate::server::snapshot::{InFile, Snapshot};
 use crate::source::detect::Detected;
 use crate::source::symlist;
-use crate::syntax::{Language, SyntaxKind};
+use crate::syntax::{Language, SyntaxKind, pl7};
 use crate::target::{Limit, Target};
 
 pub(super) struct Handler;
@@ -101,30 +100,15 @@ pub(super) fn renamed(it: InFile<'_>, at: TextSize) -> Option<Renamed<'_>> {
         });
     }
     let program = cursor.program()?.0;
-    let (range, kind) = match program.family(it.db) {
-        Family::Pl7 | Family::Pl72 => {
-            let token = cursor.token().filter(|it| it.kind() == SyntaxKind::Ident)?;
-            let is_symbol = match target?.what {
-                What::Symbol(_) => true,
-                What::Object(object) => cursor.model.objects.get(object as usize)?.class == Class::Symbol,
-                What::Call(call) => matches!(cursor.model.calls.get(call as usize)?.callee, Callee::Instance(_)),
-                _ => false,
-            };
-            (token.text_range(), is_symbol.then(|| symbol(it, program, key(token.text())))??)
-        }
-        Family::Step7 | Family::Step5 => {
-            let word = names::word_at(&cursor)?;
-            let name = key(cursor.text(word.range));
-            let kind = match word.declared {
-                Declared::Symbol(name) => symbol(it, program, name)?,
-                Declared::Field(unit, anchor) => {
-                    // What a function returns has a name of its own.
-                    let declared = place_in(it.db, unit, db::model(it.db, unit).place(anchor));
-                    let text = unit.file(it.db).text(it.db).get(std::ops::Range::<usize>::from(declared.range))?;
-                    (key_in_code(text.trim_start_matches('#')) == name).then_some(Kind::Field { unit, anchor, name })?
-                }
-            };
-            (word.range, kind)
+    let word = names::word_at(&cursor)?;
+    let (range, name) = (word.range, key(cursor.text(word.range)));
+    let kind = match word.declared {
+        Declared::Symbol(name) => symbol(it, program, name)?,
+        Declared::Field(unit, anchor) => {
+            // What a function returns has a name of its own.
+            let declared = place_in(it.db, unit, db::model(it.db, unit).place(anchor));
+            let text = unit.file(it.db).text(it.db).get(std::ops::Range::<usize>::from(declared.range))?;
+            (key_in_code(text.trim_start_matches('#')) == name).then_some(Kind::Field { unit, anchor, name })?
         }
     };
     Some(Renamed { range: cursor.in_file(range), text: cursor.text(range).to_owned(), kind })
@@ -158,47 +142,40 @@ impl<'s> Renamed<'s> {
                 let new = label(new, *language, others)?;
                 places.iter().map(|place| (*place, new.clone())).collect()
             }
-            Kind::Symbol { family: Family::Pl7 | Family::Pl72, programs, name, .. } => {
-                programs.iter().try_for_each(|&program| is_free_symbol(it, program, name, new))?;
-                let places = programs.iter().flat_map(|&program| symbol_places(it, program, name));
-                places.map(|place| (place, new.to_owned())).collect()
-            }
             Kind::Symbol { family, programs, name, .. } => {
-                let new = unmarked(new);
-                is_symbol(*family, new)?;
+                let new = unmarked(*family, new);
+                let is_other = key(new) != *name;
+                if is_other {
+                    is_symbol(*family, new)?;
+                }
                 let mut changes = Vec::new();
                 for &program in programs {
                     let names = Names::new(it.db, program);
-                    if key(new) != *name && names.declares(&key(new)) {
+                    if is_other && names.has_symbol(&key(new)) {
                         return Err(format!("`{new}` is a symbol of the program already"));
                     }
-                    for (unit, word) in names.all(name, &Declared::Symbol(name.clone())) {
-                        if !word.marked {
-                            is_bare(it, &names, unit, name, new)?;
-                        }
-                        changes.push(in_unit(it, unit, word.range, new)?);
-                    }
+                    changes.extend(of_declaration(it, &names, name, &Declared::Symbol(name.clone()), new)?);
                 }
                 changes
             }
             Kind::Field { unit, anchor, name } => {
-                let new = unmarked(new);
-                let (declaring, language) = (db::model(it.db, *unit), unit.language(it.db));
-                is_field(Family::of(language).unwrap_or(Family::Step7), new)?;
-                let beside = names::siblings(declaring.fields(), *anchor).unwrap_or_default();
-                if beside.iter().any(|it| it.anchor != *anchor && it.name == key(new)) {
+                let family = Family::of(unit.language(it.db)).unwrap_or(Family::Pl7);
+                let new = unmarked(family, new);
+                let is_other = key(new) != *name;
+                if is_other {
+                    is_field(family, new)?;
+                }
+                if names::beside(it.db, *unit, *anchor).iter().any(|it| *it == key(new)) {
                     return Err(format!("`{new}` is declared there already"));
                 }
-                let declared = Declared::Field(*unit, *anchor);
                 let mut changes = Vec::new();
                 for program in db::programs_with(it.db, unit.file(it.db)) {
                     let names = Names::new(it.db, program);
-                    for (unit, word) in names.all(name, &declared) {
-                        if !word.marked {
-                            is_bare(it, &names, unit, name, new)?;
-                        }
-                        changes.push(in_unit(it, unit, word.range, new)?);
+                    // PL7:5371
+                    if family == Family::Pl7 && is_other && names.has_symbol(&key(new)) {
+                        return Err(format!("`{new}` is a symbol of the program, which no name of a DFB may be"));
                     }
+                    changes.extend(of_declaration(it, &names, name, &Declared::Field(*unit, *anchor), new)?);
                 }
                 changes
             }
@@ -208,6 +185,24 @@ impl<'s> Renamed<'s> {
     }
 }
 
+/// All words of a program that a declaration gives their meaning.
+fn of_declaration<'s>(
+    it: InFile<'s>,
+    names: &Names<'s>,
+    name: &SmolStr,
+    declared: &Declared<'s>,
+    new: &str,
+) -> Result<Vec<Change>, String> {
+    let words = names.all(name, declared).into_iter();
+    let change = |(unit, word): (Unit<'s>, names::Word<'s>)| {
+        if !word.marked {
+            is_bare(it, names, unit, name, new)?;
+        }
+        in_unit(it, unit, word.range, new)
+    };
+    words.map(change).collect()
+}
+
 /// Whether a file is the text that is shown of it, and no listing of its tables.
 fn is_text(it: InFile<'_>, file: SourceFile) -> Result<(), String> {
     let path = file.path(it.db);
@@ -215,45 +210,6 @@ fn is_text(it: InFile<'_>, file: SourceFile) -> Result<(), String> {
         return Err(format!("`{path}` has the name, too, and is no text"));
     }
     Ok(())
-}
-
-/// Whether names of a unit are those of its program: a DFB sees its own alone (PL7:5350-5450).
-fn sees_symbols(it: InFile<'_>, unit: Unit<'_>) -> bool {
-    !matches!(unit.entity(it.db), Entity::Dfb { .. })
-}
-
-/// Every place of a symbol of PL7 or PL7-2: its declarations, and the words of code that name it.
-fn symbol_places(it: InFile<'_>, program: Program<'_>, name: &SmolStr) -> Vec<FilePlace> {
-    let mut found = Vec::new();
-    for &unit in db::program_units(it.db, program).iter().filter(|&&unit| sees_symbols(it, unit)) {
-        let model = db::model(it.db, unit);
-        let symbols = model.symbols.iter().map(|it| model.place(it.anchor));
-        let objects = model.accesses.iter().filter(|it| model.object(it.object).class == Class::Symbol);
-        let calls = model.calls.iter().filter(|it| matches!(it.callee, Callee::Instance(_)));
-        let mut ranges: Vec<TextRange> = symbols
-            .chain(objects.map(|it| model.place(it.anchor)))
-            .chain(calls.map(|it| model.place(it.anchor)))
-            .collect();
-        ranges.sort_unstable_by_key(|it| (it.start(), it.end()));
-        if ranges.is_empty() {
-            continue;
-        }
-        let tree = db::tree(it.db, unit);
-        let words = tree.syntax().descendant_tokens().filter(|it| it.kind() == SyntaxKind::Ident);
-        let words = words.filter(|it| key(it.text()) == *name).map(|it| it.text_range());
-        // Ranges may hold one another: of those that start before the word, the longest decides.
-        let mut reach = TextSize::new(0);
-        let mut next = ranges.iter().peekable();
-        for word in words {
-            while let Some(range) = next.next_if(|it| it.start() <= word.start()) {
-                reach = reach.max(range.end());
-            }
-            if word.end() <= reach {
-                found.push(place_in(it.db, unit, word));
-            }
-        }
-    }
-    found
 }
 
 /// A name of a unit by a new one. In a table, what stands behind it in its line stays where it is.
@@ -284,10 +240,13 @@ fn in_unit(it: InFile<'_>, unit: Unit<'_>, range: TextRange, new: &str) -> Resul
     Ok((place_in(it.db, unit, range), format!("{new}{}", " ".repeat(had.saturating_sub(has)))))
 }
 
-/// Without the marks that code sets on a name.
-fn unmarked(name: &str) -> &str {
-    let quoted =
-        [('"', '"'), ('«', '»')].into_iter().find_map(|(open, close)| name.strip_prefix(open)?.strip_suffix(close));
+/// Without the marks that code of Siemens sets on a name.
+fn unmarked(family: Family, name: &str) -> &str {
+    if !matches!(family, Family::Step7 | Family::Step5) {
+        return name;
+    }
+    let quotes = [('"', '"'), ('«', '»')];
+    let quoted = quotes.into_iter().find_map(|(open, close)| name.strip_prefix(open)?.strip_suffix(close));
     quoted.unwrap_or(name.trim_start_matches(['#', '-', '='])).trim()
 }
 
@@ -303,28 +262,39 @@ fn fits(new: &str, limit: Option<Limit>, what: &str) -> Result<(), String> {
     }
 }
 
-/// Whether a name can be a symbol of Siemens.
+/// Whether a name can be a symbol.
 fn is_symbol(family: Family, new: &str) -> Result<(), String> {
-    let is_part = |it: char| match family {
-        Family::Step5 => it.is_alphanumeric() || matches!(it, '_' | '-' | '.' | '/'),
-        _ => !it.is_control() && !matches!(it, '"' | '«' | '»'),
+    let is_one = match family {
+        // PL7:1198-1216
+        Family::Pl7 | Family::Pl72 => {
+            is_word(new) && !new.starts_with('_') && !new.ends_with('_') && !pl7::is_reserved(new)
+        }
+        Family::Step5 => {
+            let is_part = |it: char| it.is_alphanumeric() || matches!(it, '_' | '-' | '.' | '/');
+            new.starts_with(|it: char| it.is_alphabetic() || it == '_') && new.chars().all(is_part)
+        }
+        Family::Step7 => !new.is_empty() && !new.contains(|it: char| it.is_control() || matches!(it, '"' | '«' | '»')),
     };
-    let starts_well = family != Family::Step5 || new.starts_with(|it: char| it.is_alphabetic() || it == '_');
-    if new.is_empty() || !starts_well || !new.chars().all(is_part) {
+    if !is_one {
         return Err(format!("`{new}` is no symbol"));
     }
     fits(new, Target::any(family).symbol_length(), "a symbol")
 }
 
-/// Whether a name can be one that a block declares.
+/// Whether a name can be one that a block or a DFB declares.
 fn is_field(family: Family, new: &str) -> Result<(), String> {
-    if !is_word(new) || is_reserved(new) {
+    let is_one = match family {
+        // PL7:5371
+        Family::Pl7 | Family::Pl72 => is_word(new) && new.is_ascii() && !new.starts_with('_') && !pl7::is_reserved(new),
+        Family::Step7 | Family::Step5 => is_word(new) && !is_reserved(new),
+    };
+    if !is_one {
         return Err(format!("`{new}` is no name: it is a letter, followed by letters, digits and `_`"));
     }
     fits(new, Target::any(family).field_length(), "a name")
 }
 
-/// Whether a word ends a declaration, or starts another.
+/// Whether a word ends a declaration of STEP 7, or starts another.
 fn is_reserved(word: &str) -> bool {
     let word = word.to_ascii_uppercase();
     let is_one = ["ARRAY", "BEGIN", "NETWORK", "OF", "STRING", "STRUCT", "TITLE", "VAR"].contains(&word.as_str());
@@ -340,24 +310,6 @@ fn is_bare(it: InFile<'_>, names: &Names<'_>, unit: Unit<'_>, old: &SmolStr, new
     let is_known = || step7::parse_either(new).is_ok() || key(new) != *old && names.knows(unit, &key(new));
     if !is_one || is_known() {
         return Err(format!("`{new}` would mean something else where code names it without marks"));
-    }
-    Ok(())
-}
-
-fn is_free_symbol(it: InFile<'_>, program: Program<'_>, old: &SmolStr, new: &str) -> Result<(), String> {
-    let is_word = |it: char| it.is_alphanumeric() || it == '_';
-    if !new.starts_with(char::is_alphabetic) || !new.chars().all(is_word) {
-        return Err(format!("`{new}` is no symbol: it is a letter, followed by letters, digits and `_`"));
-    }
-    fits(new, Target::any(program.family(it.db)).symbol_length(), "a symbol")?;
-    let is_taken = db::program_units(it.db, program).iter().any(|&unit| {
-        let facts = db::facts(it.db, unit);
-        let used = facts.objects.iter().filter(|it| it.object.class == Class::Symbol).map(|it| it.object.text.as_str());
-        let used = used.map(|it| it.split(['.', ':', '[']).next().unwrap_or(it));
-        facts.symbols.iter().map(|it| it.name.as_str()).chain(used).any(|it| key(it) == key(new))
-    });
-    if is_taken && key(new) != *old {
-        return Err(format!("`{new}` is a symbol of the program already"));
     }
     Ok(())
 }
