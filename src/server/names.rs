@@ -396,6 +396,11 @@ pub(super) fn beside(db: &RootDatabase, unit: Unit<'_>, anchor: u32) -> Vec<Smol
     items.chain(fields).filter(|it| it.1 != anchor).map(|it| it.0).collect()
 }
 
+/// A field by the place of its name.
+pub(super) fn field(fields: &[Field], anchor: u32) -> Option<&Field> {
+    siblings(fields, anchor)?.iter().find(|it| it.anchor == anchor)
+}
+
 /// The fields that stand beside one, it among them.
 fn siblings(fields: &[Field], anchor: u32) -> Option<&[Field]> {
     if fields.iter().any(|it| it.anchor == anchor) {

@@ -176,6 +176,11 @@ fn hover_knows_step_7() {
     let text = hover(&mut client, "a.awl", AWL, "FB 1 ,", 1);
     assert!(text.contains("called in 1 place") && text.contains("input `go : BOOL`"), "{text}");
     client.stop();
+    // Names of fields are mnemonics, too.
+    let data = "DATA_BLOCK DB 2\nSTRUCT\n  on : BOOL;\nEND_STRUCT\nBEGIN\n  on := TRUE;\nEND_DATA_BLOCK\n";
+    let mut client = Client::start(able(), &[("a.awl", data)]);
+    assert_eq!(hover(&mut client, "a.awl", data, "on :=", 1), "**on**: field of type `BOOL` of `DB2`");
+    client.stop();
 }
 
 #[test]
@@ -356,6 +361,8 @@ fn symbols_of_blocks_and_fields_lead_to_what_they_name() {
     assert_eq!(find("FUNCTION_BLOCK FB 1", 16), ["a.awl:41:13-41:20"], "the calls of the block of a heading");
     assert_eq!(find("state : UDT", 1), ["a.awl:28:13-28:22", "a.awl:29:13-29:25"], "parts of a structure");
     assert_eq!(find("Speed : INT", 1), ["a.awl:30:13-30:25", "a.awl:36:13-36:23"]);
+    assert_eq!(find("Go : BOOL", 1), ["a.awl:27:13-27:16", "a.awl:42:12-42:14"], "a parameter, in the call too");
+    assert_eq!(find("Go := E 0.0", 1), ["a.awl:27:14-27:16", "a.awl:42:12-42:14"], "from the call");
     let mut shown = |needle: &str, within: usize| hover(&mut client, "a.awl", BLOCKS, needle, within);
     let text = shown("\"Motor\"", 2);
     assert!(text.contains("`FB1`, called in 1 place, runs in OB1") && text.contains("input `go : BOOL`"), "{text}");
@@ -371,6 +378,7 @@ fn symbols_of_blocks_and_fields_lead_to_what_they_name() {
     assert!(text.contains("static of type `UDT1`") && !text.contains("not used"), "{text}");
     let text = shown("A 4.0", 1);
     assert!(text.contains("symbol `\"Lamp\"`: red"), "{text}");
+    assert_eq!(shown("Go := E 0.0", 1), "**Go**: input of type `BOOL` of `FB1`");
     let open =
         BLOCKS.replace("      L     #state.hours;", "      L     #state.\n      L     \"Data\".\n      =     \"La");
     let open = open.replace("      L     #scratch.hours;", "      L     #scratch.");

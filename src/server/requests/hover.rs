@@ -16,8 +16,9 @@ use crate::model::object::{Class, Object};
 use crate::model::unit::{Callee, Mode, Section};
 use crate::server::cursor::{self, Called, InProgram, InUnit, Named, Target, What};
 use crate::server::describe;
+use crate::server::names::{self, Declared};
 use crate::server::snapshot::{InFile, Snapshot};
-use crate::syntax::Language;
+use crate::syntax::{Language, SyntaxKind};
 
 pub(super) struct Handler;
 
@@ -42,10 +43,8 @@ impl Handle for Handler {
                     parts.push(text);
                 }
                 _ => {
-                    if let Some(token) = cursor.token()
-                        && let Some(text) = describe::instruction(token.text(), cursor.unit.language(it.db))
-                    {
-                        range = Some(cursor.in_file(token.text_range()));
+                    if let Some((here, text)) = of_word(&cursor).or_else(|| of_instruction(&cursor)) {
+                        range = Some(cursor.in_file(here));
                         parts.push(text);
                     }
                 }
@@ -79,6 +78,41 @@ fn rules(it: &InFile<'_>, at: rowan::TextSize) -> Vec<String> {
         )
     };
     here.map(page).collect()
+}
+
+/// A name that a declaration gives its meaning, where no object is meant: a parameter in a call, the field that a data block
+/// gives a value.
+fn of_word(cursor: &InUnit<'_>) -> Option<(TextRange, String)> {
+    let word = names::word_at(cursor)?;
+    let Declared::Field(unit, anchor) = word.declared else { return None };
+    let (db, text) = (cursor.it.db, cursor.text(word.range));
+    let (model, of) = (db::model(db, unit), unit.entity(db).to_string());
+    let item = model.interface.iter().flat_map(|it| &it.items).find(|it| it.anchor == anchor);
+    let (what, ty) = match (item, names::field(model.fields(), anchor)) {
+        (Some(item), _) => (item.role.describe(), item.ty.describe().to_string()),
+        (None, Some(field)) => {
+            let what = match unit.entity(db).block_kind() {
+                Some(BlockKind::Udt) => "component",
+                Some(it) if it.is_data() => "field",
+                _ => described(field.section),
+            };
+            (what, field.ty.to_string())
+        }
+        (None, None) => return None,
+    };
+    Some((word.range, format!("**{text}**: {what} of type `{ty}` of `{of}`")))
+}
+
+fn of_instruction(cursor: &InUnit<'_>) -> Option<(TextRange, String)> {
+    let token = cursor.token()?;
+    let (language, range) = (cursor.unit.language(cursor.it.db), token.text_range());
+    let tree = db::tree(cursor.it.db, cursor.unit);
+    let mut instructions = tree.syntax().descendants().filter(|it| it.kind() == SyntaxKind::Instr);
+    let mut is_mnemonic = || instructions.any(|it| it.tokens().any(|it| it.text_range() == range));
+    // The names of parameters and fields are words of the language, too.
+    let is_one = !language.is_statement_list() || is_mnemonic();
+    let text = describe::instruction(token.text(), language).filter(|_| is_one)?;
+    Some((range, text))
 }
 
 fn of_target(cursor: &InUnit<'_>, target: &Target) -> Option<String> {
@@ -258,13 +292,17 @@ fn write_uses(out: &mut String, named: &Named, index: &ProgramIndex<'_>) {
     }
 }
 
+fn described(of: Section) -> &'static str {
+    section(of).unwrap_or(match of {
+        Section::Temp => "temporary",
+        _ => "static",
+    })
+}
+
 /// What a name is that a block declares, or has as an instance of a DFB.
 fn declared(cursor: &InUnit<'_>, what: &What, object: &Object, index: &ProgramIndex<'_>) -> Option<String> {
     if let Some(field) = cursor::declaration(cursor.model, object) {
-        let word = section(field.section).unwrap_or(match field.section {
-            Section::Temp => "temporary",
-            _ => "static",
-        });
+        let word = described(field.section);
         let whole = format!("{word} of type `{}`", field.ty);
         let Some((_, path)) = object.text.split_once('.').filter(|_| !matches!(what, What::Declaration(_))) else {
             return Some(whole);

@@ -6,9 +6,11 @@ use rustc_hash::FxHashSet;
 use super::{Answer, Handle};
 use crate::analysis::Site;
 use crate::analysis::program::ProgramIndex;
-use crate::db::FilePlace;
+use crate::db::{self, FilePlace, Program};
+use crate::model::symbols::key;
 use crate::model::unit::Mode;
 use crate::server::cursor::{Called, InProgram, InUnit, Named, Target, What};
+use crate::server::names::{self, Declared, Names};
 use crate::server::requests::definition;
 use crate::server::snapshot::Snapshot;
 
@@ -37,11 +39,10 @@ pub(super) struct Found {
 
 /// Uses of what stands at a place, each place once; declarations first.
 pub(super) fn found(cursor: Option<InUnit<'_>>, with_declarations: bool) -> Vec<Found> {
-    let Some((cursor, target)) = cursor.and_then(|it| it.target().map(|target| (it, target))) else {
-        return Vec::new();
-    };
+    let Some(cursor) = cursor else { return Vec::new() };
+    let target = cursor.target();
     let mut found = Vec::new();
-    if let What::Label { name, part } = &target.what {
+    if let Some(What::Label { name, part }) = target.as_ref().map(|it| &it.what) {
         let model = cursor.model;
         let place = |range| FilePlace { file: cursor.it.file, range: cursor.in_file(range) };
         if with_declarations {
@@ -53,19 +54,44 @@ pub(super) fn found(cursor: Option<InUnit<'_>>, with_declarations: bool) -> Vec<
         return found;
     }
     let Some((program, unit)) = cursor.program() else { return found };
-    let program = InProgram::new(cursor.it, program);
-    let index = program.index();
-    if with_declarations {
-        let declared = definition::places(&cursor, &target, &program, &index, unit);
-        found.extend(declared.into_iter().map(|place| Found { place, mode: None }));
+    let is_object = matches!(target, Some(Target { what: What::Object(_), .. }));
+    if let Some(target) = target {
+        let program = InProgram::new(cursor.it, program);
+        let index = program.index();
+        if with_declarations {
+            let declared = definition::places(&cursor, &target, &program, &index, unit);
+            found.extend(declared.into_iter().map(|place| Found { place, mode: None }));
+        }
+        let mut seen: FxHashSet<FilePlace> = found.iter().map(|it| it.place).collect();
+        let mut places = program.places();
+        for (site, mode) in uses(&cursor, &target, &index, unit) {
+            let place = places.of(site).filter(|it| seen.insert(*it));
+            found.extend(place.map(|place| Found { place, mode: Some(mode) }));
+        }
     }
-    let mut seen: FxHashSet<FilePlace> = found.iter().map(|it| it.place).collect();
-    let mut places = program.places();
-    for (site, mode) in uses(&cursor, &target, &index, unit) {
-        let place = places.of(site).filter(|it| seen.insert(*it));
-        found.extend(place.map(|place| Found { place, mode: Some(mode) }));
+    // An object is in one place, and what names the same field may be in another.
+    if !is_object {
+        named(&cursor, program, with_declarations, &mut found);
     }
     found
+}
+
+/// Where what a block declares is named and no object is meant: in calls, and where a data block gives it a value.
+fn named(cursor: &InUnit<'_>, program: Program<'_>, with_declarations: bool, found: &mut Vec<Found>) {
+    let Some(word) = names::word_at(cursor) else { return };
+    let Declared::Field(of, anchor) = word.declared else { return };
+    let db = cursor.it.db;
+    let declaration = names::place_in(db, of, db::model(db, of).place(anchor));
+    let name = key(cursor.text(word.range));
+    for (unit, word) in Names::new(db, program).all(&name, &word.declared) {
+        let place = names::place_in(db, unit, word.range);
+        let holds = |it: FilePlace| it.file == place.file && it.range.contains_range(place.range);
+        let is_declaration = holds(declaration);
+        let is_known = |it: &Found| holds(it.place);
+        if (with_declarations || !is_declaration) && !found.iter().any(is_known) {
+            found.push(Found { place, mode: (!is_declaration).then_some(Mode::Read) });
+        }
+    }
 }
 
 fn uses(cursor: &InUnit<'_>, target: &Target, index: &ProgramIndex<'_>, unit: u32) -> Vec<(Site, Mode)> {
