@@ -41,7 +41,7 @@ const PIECES: [&str; 24] = [
 ];
 
 /// Texts of a corpus program, by the path of its folder. A configuration stays as it is.
-fn program(folder: &str) -> Vec<(String, String)> {
+pub fn program(folder: &str) -> Vec<(String, String)> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("corpus").join(folder);
     let mut files: Vec<(String, String)> = fs::read_dir(folder)
         .unwrap()

@@ -1,12 +1,11 @@
 //! Another name for what a program of Siemens declares.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
 use crate::client::{Client, able};
+use crate::edits::program;
 use crate::requests::{at, edited, locations};
 
 const SYMBOLS: &str = "\"Motor\",\"FB      1\",\"FB      1\",\"starts and stops\"
@@ -311,13 +310,7 @@ fn a_program_with_another_name_in_it_is_the_same() {
     able["general"]["positionEncodings"] = json!(["utf-8"]);
     let (mut renamed, mut occurrences) = (0, 0);
     for folder in ["convoyeur-s7-en", "verpackung", "perceuse", "bidons-s5", "ventilation", "traitement-surface"] {
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("corpus/programs").join(folder);
-        let mut files: Vec<(String, String)> = fs::read_dir(folder)
-            .unwrap()
-            .map(|it| it.unwrap().path())
-            .filter_map(|it| Some((it.file_name()?.to_str()?.to_owned(), fs::read_to_string(&it).ok()?)))
-            .collect();
-        files.sort();
+        let files = program(&format!("programs/{folder}"));
         let given: Vec<(&str, &str)> = files.iter().map(|it| (it.0.as_str(), it.1.as_str())).collect();
         let mut client = Client::start(able.clone(), &given);
         let before = lines(&client.check());
