@@ -32,6 +32,8 @@ pub(super) struct RootSnapshot {
     pub(super) db: RootDatabase,
     /// The files that are checked, by path.
     pub(super) files: Arc<FxHashMap<String, SourceFile>>,
+    /// Programs that are not read, by path.
+    pub(super) unread: Arc<[String]>,
     /// Its `plclint.toml`, or where one would be.
     pub(super) config: Option<PathBuf>,
 }

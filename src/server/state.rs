@@ -25,6 +25,8 @@ pub(super) struct Root {
     /// Every file that was ever seen: the database never forgets one.
     files: FxHashMap<String, File>,
     listed: Arc<FxHashMap<String, SourceFile>>,
+    /// Programs that the folder's walk found and that are not read.
+    unread: Arc<[String]>,
     /// The load that the files wait for. One that comes later has another number.
     pub(super) loading: Option<u32>,
     /// Whether which files are listed may have changed since the database was told.
@@ -113,6 +115,7 @@ impl Root {
             db: RootDatabase::new(settings, None),
             files: FxHashMap::default(),
             listed: Arc::default(),
+            unread: Arc::default(),
             loading: None,
             relist: false,
         }
@@ -123,6 +126,7 @@ impl Root {
             id: self.id,
             db: self.db.clone(),
             files: self.listed.clone(),
+            unread: self.unread.clone(),
             config: self.config.clone().or_else(|| Some(self.folder.as_ref()?.join(crate::lint::settings::FILE_NAME))),
         }
     }
@@ -171,6 +175,8 @@ impl Root {
         }
         self.relist = true;
         self.db.set_unread(&loaded.files.unread);
+        let is_program = |it: &&Unread| matches!(it.reason, UnreadReason::Unsupported(_));
+        self.unread = loaded.files.unread.iter().filter(is_program).map(|it| it.path.clone()).collect();
         for Unread { path, .. } in loaded.files.unread {
             self.files.entry(path).or_default().found = true;
         }

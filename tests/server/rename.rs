@@ -119,6 +119,21 @@ fn symbols_of_siemens_are_renamed_with_their_tables() {
 }
 
 #[test]
+fn what_programs_name_that_are_not_read_keeps_its_name() {
+    let scl = "FUNCTION FC 9 : VOID\nBEGIN\n  IF \"LAMP\" THEN\n    FB1.DB1(Go := TRUE);\n    old := 1;\n  END_IF;\nEND_FUNCTION\n";
+    let mut client = Client::start(able(), &[("a.awl", BLOCKS), ("a.sdf", SYMBOLS), ("b.scl", scl)]);
+    for (place, new) in [(("\"Lamp\"", 1), "Light"), (("Go : BOOL", 1), "Start")] {
+        assert_eq!(rename(&mut client, "a.awl", BLOCKS, place, new), Err(-32803), "{new}");
+    }
+    assert!(rename(&mut client, "a.awl", BLOCKS, ("\"Lamp\"", 1), "LAMP").is_ok());
+    // What is named there as something else, or not at all.
+    for (place, new) in [(("state : UDT", 1), "now"), (("\"Motor\"", 1), "Moteur"), (("on : BOOL", 1), "up")] {
+        assert!(rename(&mut client, "a.awl", BLOCKS, place, new).is_ok(), "{new}");
+    }
+    client.stop();
+}
+
+#[test]
 fn what_blocks_declare_is_renamed_wherever_it_is_named() {
     let mut client = Client::start(able(), &[("a.awl", BLOCKS), ("a.sdf", SYMBOLS)]);
     let mut after = |place, new| {

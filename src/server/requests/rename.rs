@@ -1,5 +1,6 @@
 //! `textDocument/rename`: another name for a symbol, a label, or what a block declares, wherever it stands.
 
+use std::fs;
 use std::path::Path;
 
 use lsp_types::{RenameParams, RenameRequest};
@@ -17,6 +18,7 @@ use crate::server::cursor::{InUnit, What, key_in_code};
 use crate::server::edits::Edits;
 use crate::server::names::{self, Declared, Names, place_in};
 use crate::server::snapshot::{InFile, Snapshot};
+use crate::source::decode::decode;
 use crate::source::detect::Detected;
 use crate::source::symlist;
 use crate::syntax::{Language, SyntaxKind, pl7};
@@ -147,6 +149,7 @@ impl<'s> Renamed<'s> {
                 let is_other = key(new) != *name;
                 if is_other {
                     is_symbol(*family, new)?;
+                    is_read(it, name, false)?;
                 }
                 let mut changes = Vec::new();
                 for &program in programs {
@@ -164,6 +167,7 @@ impl<'s> Renamed<'s> {
                 let is_other = key(new) != *name;
                 if is_other {
                     is_field(family, new)?;
+                    is_read(it, name, true)?;
                 }
                 if names::beside(it.db, *unit, *anchor).iter().any(|it| *it == key(new)) {
                     return Err(format!("`{new}` is declared there already"));
@@ -211,6 +215,34 @@ fn is_text(it: InFile<'_>, file: SourceFile) -> Result<(), String> {
     }
     Ok(())
 }
+
+/// Whether no program that is not read has the name: code in SCL names symbols, too. `is_field`: behind a point, or as a
+/// parameter that is given something.
+fn is_read(it: InFile<'_>, name: &SmolStr, is_field: bool) -> Result<(), String> {
+    let is_part = |it: char| it.is_alphanumeric() || it == '_';
+    let marks = ['"', '#', ' '];
+    let has_it = |path: &&String| {
+        let bytes = fs::read(path).unwrap_or_default();
+        if bytes.len() > LONGEST_UNREAD || bytes.contains(&0) {
+            return false;
+        }
+        let text = decode(&bytes, None).text.to_lowercase();
+        text.match_indices(name.as_str()).any(|(at, _)| {
+            let (before, behind) = (&text[..at], &text[at + name.len()..]);
+            let given = behind.trim_start_matches(marks);
+            let is_named =
+                before.trim_end_matches(marks).ends_with('.') || given.starts_with(":=") || given.starts_with("=>");
+            !before.ends_with(is_part) && !behind.starts_with(is_part) && (is_named || !is_field)
+        })
+    };
+    match it.root.unread.iter().find(has_it) {
+        Some(path) => Err(format!("`{path}` has the name `{name}`, too, and is of a kind that is not read")),
+        None => Ok(()),
+    }
+}
+
+/// Programs that are longer are no text that anybody wrote.
+const LONGEST_UNREAD: usize = 1 << 24;
 
 /// A name of a unit by a new one. In a table, what stands behind it in its line stays where it is.
 fn in_unit(it: InFile<'_>, unit: Unit<'_>, range: TextRange, new: &str) -> Result<Change, String> {
