@@ -1,6 +1,5 @@
 //! `textDocument/rename`: another name for a symbol, a label, or what a block declares, wherever it stands.
 
-use std::fs;
 use std::path::Path;
 
 use lsp_types::{RenameParams, RenameRequest};
@@ -20,7 +19,7 @@ use crate::server::names::{self, Declared, Names, place_in};
 use crate::server::snapshot::{InFile, Snapshot};
 use crate::source::decode::decode;
 use crate::source::detect::Detected;
-use crate::source::symlist;
+use crate::source::{symlist, walk};
 use crate::syntax::{Language, SyntaxKind, pl7};
 use crate::target::{Limit, Target};
 
@@ -222,7 +221,7 @@ fn is_read(it: InFile<'_>, name: &SmolStr, is_field: bool) -> Result<(), String>
     let is_part = |it: char| it.is_alphanumeric() || it == '_';
     let marks = ['"', '#', ' '];
     let has_it = |path: &&String| {
-        let bytes = fs::read(path).unwrap_or_default();
+        let bytes = walk::read(Path::new(path)).unwrap_or_default();
         if bytes.len() > LONGEST_UNREAD || bytes.contains(&0) {
             return false;
         }
