@@ -41,7 +41,7 @@ const MAX_COMPARISONS: usize = 20_000_000;
 const MAX_EFFORT: usize = 500_000;
 
 /// Of more transitions than this that depend on one another, only single ones and pairs are crossed.
-const MAX_TOGETHER: usize = 5;
+const MAX_TOGETHER: usize = 7;
 
 /// A step of some graph of a section, numbered over all of them.
 pub type Node = u32;
@@ -1221,10 +1221,12 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
         set.iter().enumerate().any(|(at, &a)| set[..at].iter().any(|&b| self.are_branches(a, b)))
     }
 
-    /// Of sets that cross two branches of one step, what is left when one of them is taken.
+    /// Of sets that cross two branches of one step, what is left when the first of them is taken.
     fn apart(&self, sets: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
         let mut found: Vec<Vec<usize>> = Vec::new();
-        for set in sets {
+        for mut set in sets {
+            // They come by the objects that they ask for.
+            set.sort_unstable();
             let mut kept: Vec<usize> = Vec::new();
             for it in set {
                 if !kept.iter().any(|&other| self.are_branches(it, other)) {
