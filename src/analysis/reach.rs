@@ -1164,6 +1164,8 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
             left_out |= combined.len() > MOST;
             sets = combined;
         }
+        // They come by the objects that they ask for.
+        sets.iter_mut().for_each(|it| it.sort_unstable());
         if self.apart {
             sets = self.apart(sets);
         }
@@ -1224,9 +1226,7 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
     /// Of sets that cross two branches of one step, what is left when the first of them is taken.
     fn apart(&self, sets: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
         let mut found: Vec<Vec<usize>> = Vec::new();
-        for mut set in sets {
-            // They come by the objects that they ask for.
-            set.sort_unstable();
+        for set in sets {
             let mut kept: Vec<usize> = Vec::new();
             for it in set {
                 if !kept.iter().any(|&other| self.are_branches(it, other)) {
