@@ -1095,7 +1095,7 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
         cache: &mut Cache,
         reached: &mut Reached,
     ) -> Vec<Vec<usize>> {
-        let mut free: Vec<Vec<usize>> = Vec::new();
+        let mut free: Vec<Vec<Vec<usize>>> = Vec::new();
         // Of those that depend on one another and cannot all wait, one set or the other happens.
         let mut urgent: Vec<Vec<Vec<usize>>> = Vec::new();
         for cluster in self.clusters(valid) {
@@ -1103,13 +1103,15 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
             reached.is_partial |= is_partial;
             reached.takes_branches |= sets.iter().any(|it| self.takes_branches(it));
             if sets.iter().any(Vec::is_empty) {
-                free.extend(sets.into_iter().filter(|it| !it.is_empty()));
+                free.push(sets.into_iter().filter(|it| !it.is_empty()).collect());
             } else if !sets.is_empty() {
                 urgent.push(sets);
             }
         }
         /// More combinations than this are not looked at.
         const MOST: usize = 256;
+        /// Transitions of a small chart.
+        const EXACT: usize = 8;
         let mut bases: Vec<Vec<usize>> = vec![Vec::new()];
         for sets in &urgent {
             let combined = bases.iter().flat_map(|base| sets.iter().map(move |it| [base.as_slice(), it].concat()));
@@ -1117,8 +1119,21 @@ impl<'n, 'p, 'a> Walker<'n, 'p, 'a> {
             reached.is_partial |= combined.len() > MOST;
             bases = combined;
         }
+        // Those that can wait come one after the other. What comes first may make others valid that do not let the next
+        // one come alone: in a small chart they come at once, too.
+        let is_small = self.component.crossings.len() <= EXACT;
+        let mut with: Vec<Vec<usize>> = Vec::new();
+        for sets in &free {
+            let also = if is_small { with.clone() } else { Vec::new() };
+            with.extend(sets.iter().cloned());
+            with.extend(also.iter().flat_map(|one| sets.iter().map(move |it| [one.as_slice(), it].concat())));
+            if is_small && with.len() > MOST {
+                reached.is_partial = true;
+                with.truncate(MOST);
+            }
+        }
         let alone = bases.iter().filter(|it| !it.is_empty()).cloned();
-        let with = bases.iter().flat_map(|base| free.iter().map(move |it| [base.as_slice(), it].concat()));
+        let with = bases.iter().flat_map(|base| with.iter().map(move |it| [base.as_slice(), it].concat()));
         alone.chain(with).collect()
     }
 
